@@ -41,9 +41,8 @@ from plantar.conventions import GRAVITY
 from plantar.motions.campaign import FIT
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.uncertainty import EXACT
-from plantar.twin.presets import preset_named
+from plantar.twin.presets import gravitational_stiffness, preset_named
 from plantar.twin.robots import hrp2
-from plantar.twin.robots.gravity import gravitational_stiffness
 
 ROBOTS = ("hrp2", "talos", "g1", "icub")
 STIFFER = 2.2  # times the stiffness with which the robot just stands: 500 N·m/rad for the HRP-2-like one

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The four commands from logs to a simulator. The logs come from the built-in twin; put your own in their place.
+# The five commands from logs to a simulator. The logs come from the built-in twin; put your own in their place.
 set -e
 out=${1:-out/quick_start}
 

@@ -17,7 +17,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 # A room imports only from rooms that stand before it.
 ROOMS = (
     "conventions", "errors", "choices", "notes", "pages", "files", "handed_back", "cores",
-    "robot", "logs", "signals", "contact", "checks",
+    "robot", "logs", "signals", "contact", "faults",
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",
     "online",
@@ -28,7 +28,7 @@ ROOMS = (
 FEET = (
     "settings", "recording", "coherent_band", "regression", "place", "fit", "interval_width", "exclusion", "assess",
     "internal_error", "prepare_log", "first_look", "prepare",
-    "foot_fit", "foot_assessment", "put_right", "memory_of_others",
+    "foot_fit", "foot_assessment", "put_right", "shared_hysteresis",
     "result", "identify", "validate", "select_motions",
 )  # fmt: skip
 # Two identifications that know nothing of one another: what both need stands in an earlier room.
@@ -38,7 +38,7 @@ FULLEST_FOLDER = 16  # Python files
 
 # Rooms that decide numbers: each of their modules is imported by a test of its own room.
 TESTED = (
-    "signals", "contact", "checks", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
+    "signals", "contact", "faults", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
     "online", "fleet",
 )  # fmt: skip
 # The one place that catches what nobody thought of: an axis is given up, the result says so.

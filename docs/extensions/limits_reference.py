@@ -24,7 +24,7 @@ ROOMS = {
     "logs": "Reading logs",
     "robot": "Robot files",
     "robot_guess": "A first robot file",
-    "checks": "Checks of a log",
+    "faults": "Faults of logs, sensors and robot files",
     "signals": "Filters and repairs of columns",
     "contact": "Contact, slip and stances",
     "sensors": "What sensors may have wrong",

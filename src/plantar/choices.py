@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Iterable
 from typing import TypeVar
@@ -16,6 +17,12 @@ def one_of(name: str, value: object, choices: Iterable[str]) -> None:
     known = tuple(choices)
     if not isinstance(value, str) or value not in known:
         raise SettingsError(f"{name} is not a choice", value=value, valid=", ".join(known))
+
+
+def nearest(name: str, names: Iterable[str], most: int = 5) -> str:
+    """What may have been meant by a wrong name, as an error's `valid`; the first of the names where none is like it."""
+    known = list(names)
+    return ", ".join(difflib.get_close_matches(name, known, n=3) or known[:most])
 
 
 def settings_of(given: Settings | None, kind: type[Settings]) -> Settings:

@@ -7,6 +7,8 @@ the value, and says what would be valid. The command line prints that line and e
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -85,3 +87,15 @@ class MissingExtra(PlantarError):
 
     def __init__(self, package: str, extra: str, purpose: str) -> None:
         super().__init__(f"{purpose} needs the package '{package}': pip install 'plantar[{extra}]'")
+
+
+@contextmanager
+def needs(package: str, extra: str, purpose: str) -> Iterator[None]:
+    """A `with` block that imports an optional dependency. Raises MissingExtra where it is not installed.
+
+    package: to name where the import does not say which is missing. extra: of plantar, that brings it.
+    """
+    try:
+        yield
+    except ImportError as error:
+        raise MissingExtra(error.name or package, extra, purpose) from error

@@ -16,8 +16,8 @@ from rich.markup import render
 from command_line import run, write_csv
 from plantar import __version__
 from plantar.cli import COMMANDS
-from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import console, table
+from plantar.cli.identify.feet_tables import advised
 from plantar.logs.readers import open_log
 from plantar.results.feet import Parameter
 from plantar.robot.model import load_robot

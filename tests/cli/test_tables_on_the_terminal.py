@@ -266,7 +266,7 @@ def test_how_much_of_a_log_was_used_adds_up_by_motion_and_foot() -> None:
         Phase("walk", "left", 3.5, 4.0, "transition", False, "tips"),
         Phase("walk", "right", 0.0, 4.0, "single", True, None),
     ]
-    assert used_shares(phases) == [
+    assert [share.to_dict() for share in used_shares(phases)] == [
         {"motion": "walk", "foot": "left", "seconds": 4.0, "served": 2.0, "reasons": "tips (2.0 s)"},
         {"motion": "walk", "foot": "right", "seconds": 4.0, "served": 4.0, "reasons": ""},
     ]

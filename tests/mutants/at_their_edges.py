@@ -7,10 +7,10 @@ from mutant import Mutant
 
 AT_THEIR_EDGES = (
     Mutant(
-        "report/tables.py",
+        "results/usage.py",
         "seconds used of all motions and feet",
-        "used = sum(phase.end - phase.start for phase in mine if phase.used)",
-        "used = sum(phase.end - phase.start for phase in phases if phase.used)",
+        "used[key] += duration",
+        "used[phase.motion, ''] += duration",
         ("report/test_pages_numbers.py",),
     ),
     Mutant(
@@ -210,11 +210,11 @@ AT_THEIR_EDGES = (
         ("feet/exclusion/test_torque_saturation.py",),
     ),
     Mutant(
-        "checks/standing.py",
+        "faults/standing.py",
         "decimetres called centimetres",
         "{100 * best:.1f} cm",
         "{10 * best:.1f} cm",
-        ("checks/test_standing.py",),
+        ("faults/test_standing.py",),
     ),
     Mutant(
         "contact/sole_height.py",

@@ -111,17 +111,17 @@ DATA_FAULTS = (
         "drift = drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/regression/test_regression_data.py",),
     ),
     Mutant(
-        "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown), None)",
+        "feet/shared_hysteresis.py", "a memory is made up", "s.refused is None and s.model.name in shown), None)",
         "True), None)",
-        ("feet/test_memory_of_others.py",),
+        ("feet/test_shared_hysteresis.py",),
     ),
     Mutant(
-        "feet/memory_of_others.py", "what is not excluded is not said",
-        "if excluded and not steps and not small:", "if True:", ("feet/test_memory_of_others.py",),
+        "feet/shared_hysteresis.py", "what is not excluded is not said",
+        "if excluded and not steps and not small:", "if True:", ("feet/test_shared_hysteresis.py",),
     ),
     Mutant(
-        "feet/memory_of_others.py", "small motions exclude a memory", "and not steps and not small", "and not steps",
-        ("feet/test_memory_of_others.py",),
+        "feet/shared_hysteresis.py", "small motions exclude a memory", "and not steps and not small", "and not steps",
+        ("feet/test_shared_hysteresis.py",),
     ),
     Mutant(
         "feet/fit/worth.py", "an unsure cube keeps its model", "len(alone) == len(fit.names)", "len(alone) > 0",

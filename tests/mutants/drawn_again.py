@@ -180,7 +180,7 @@ EXPORT = (
     ),
     Mutant(
         "exporters/randomization.py", "a deviation twice as wide as its interval says",
-        "NORMAL95: Final = 2 * 1.96", "NORMAL95: Final = 1.96",
+        "/ (2 * NORMAL95)", "/ NORMAL95",
     ),
     Mutant(
         "exporters/randomization.py", "common causes by variance, not by deviation",

@@ -13,11 +13,11 @@ DRAWN_BLIND = (
         ("exporters/test_export.py",),
     ),
     Mutant(
-        "checks/gyroscope.py",
+        "faults/gyroscope.py",
         "an inverted quaternion is offered where it is none",
         'turns.apart["inverted"] < RIGHT_TURN\n            text',
         'turns.apart["inverted"] > RIGHT_TURN\n            text',
-        ("checks/test_gyroscope.py",),
+        ("faults/test_gyroscope.py",),
     ),
     Mutant(
         "motions/feasible.py",
@@ -34,11 +34,11 @@ DRAWN_BLIND = (
         ("fleet/test_summary.py",),
     ),
     Mutant(
-        "checks/bush_axes.py",
+        "faults/bush_frames.py",
         "a bush's place is not turned with its ankle",
         "places[carrier, 0] + turn @ placement.translation",
         "places[carrier, 0] + placement.translation",
-        ("checks/test_bush_axes.py",),
+        ("faults/test_bush_axes.py",),
     ),
     Mutant(
         "report/verdict.py",
@@ -62,10 +62,10 @@ DRAWN_BLIND = (
         ("robot_guess/test_evidence.py",),
     ),
     Mutant(
-        "cli/fleet/run.py",
+        "cli/console/options.py",
         "a model's name is not looked at",
-        "if model not in MODEL_CHOICES:",
-        "if not model:",
+        "if text not in MODEL_CHOICES:",
+        "if not text:",
         ("cli/test_refusals.py",),
     ),
     Mutant(

@@ -120,7 +120,7 @@ DRAWN_BY_LOT = (
         ("results/test_feet.py",),
     ),
     Mutant(
-        "checks/stance.py",
+        "faults/stance.py",
         "twice what is upright for what is level",
         "level = np.eye(3) - up[:, :, None]",
         "level = np.eye(3) + up[:, :, None]",
@@ -177,13 +177,13 @@ DRAWN_BY_LOT = (
         'beaten = f"{len(failed)} of',
     ),
     Mutant(
-        "checks/joints/names.py",
+        "faults/joints/names.py",
         "joints that are not recorded are no error",
         '(valid: a position of every joint between IMU and feet)", True)',
         '(valid: a position of every joint between IMU and feet)", False)',
     ),
     Mutant(
-        "checks/channels.py",
+        "faults/channels.py",
         "a robot at rest holds its readings",
         "held = held_in(log, column) & ~rest",
         "held = held_in(log, column)",

@@ -50,7 +50,7 @@ DRAWN_EVERYWHERE = (
     Mutant(
         "feet/validate.py",
         "a stored sensor's lean is forgotten",
-        "leans=0.0 if entry is None else entry.leans",
+        "leans=entry.leans",
         "leans=0.0",
         ("feet/test_validate.py",),
     ),
@@ -90,11 +90,11 @@ DRAWN_EVERYWHERE = (
         ("sensors/test_air_zero.py",),
     ),
     Mutant(
-        "checks/gaps.py",
+        "faults/gaps.py",
         "a sensor that ends early has a gap",
         "if run.start > 0 and run.stop < len(empty)]",
         "if run.start > 0]",
-        ("checks/test_gaps.py",),
+        ("faults/test_gaps.py",),
     ),
     Mutant(
         "report/payload.py",
@@ -120,7 +120,7 @@ DRAWN_EVERYWHERE = (
     Mutant(
         "fleet/statistics/changes.py",
         "an outlier's interval is one deviation",
-        "scatter = 1.96 * float",
+        "scatter = NORMAL95 * float",
         "scatter = float",
         ("fleet/statistics/test_changes.py",),
     ),

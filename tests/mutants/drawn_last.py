@@ -20,18 +20,18 @@ DRAWN_LAST = (
         ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
-        "checks/imu.py",
+        "faults/imu.py",
         "an attitude may lean by 50 deg",
         "WRONG_ANGLE = np.radians(25)",
         "WRONG_ANGLE = np.radians(50)",
-        ("checks/test_imu.py",),
+        ("faults/test_imu.py",),
     ),
     Mutant(
-        "checks/gaps.py",
+        "faults/gaps.py",
         "gaps from six per cent on",
         "LEAST_LOST = 0.03",
         "LEAST_LOST = 0.06",
-        ("checks/test_gaps.py",),
+        ("faults/test_gaps.py",),
     ),
     Mutant(
         "exporters/contact/points.py",
@@ -76,11 +76,11 @@ DRAWN_LAST = (
         ("whole_body/test_equations.py",),
     ),
     Mutant(
-        "whole_body/sensor_faults.py",
+        "whole_body/sensor_calibration.py",
         "a tilt in radians called degrees",
         "for value in np.degrees(angle))",
         "for value in angle)",
-        ("whole_body/test_sensor_faults.py",),
+        ("whole_body/test_sensor_calibration.py",),
     ),
     Mutant(
         "logs/readers/streams.py",

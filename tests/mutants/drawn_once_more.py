@@ -6,25 +6,25 @@ from mutant import Mutant
 
 DRAWN_ONCE_MORE = (
     Mutant(
-        "checks/gaps.py",
+        "faults/gaps.py",
         "the last dropout for the first",
         "first = int(np.flatnonzero(mask)[0])",
         "first = int(np.flatnonzero(mask)[-1])",
     ),
     Mutant(
-        "checks/gyroscope.py",
+        "faults/gyroscope.py",
         "one wild window moves a reading",
         "np.median(np.linalg.norm((turn - self.integral)",
         "np.mean(np.linalg.norm((turn - self.integral)",
     ),
     Mutant(
-        "checks/load_signs.py",
+        "faults/load_signs.py",
         "feet that lift are no loaded ones",
         "np.median(total) > -weight / 2",
         "np.median(total) > weight / 2",
     ),
     Mutant(
-        "checks/quaternions.py",
+        "faults/quaternions.py",
         "turns in the other frame",
         "start - np.cross(start, stop)",
         "start + np.cross(start, stop)",

@@ -22,8 +22,8 @@ HANDED_ON = (
         'STIFF = "0.004 1"', 'STIFF = "0.02 1"', ("exporters/test_simulators.py",),
     ),
     Mutant(
-        "cli/console/delay.py", "seconds taken for milliseconds",
-        "if 0 < abs(value) < LEAST:", "if 0 < abs(value) < 0.0:", ("cli/test_refusals.py",),
+        "cli/console/options.py", "seconds taken for milliseconds",
+        "if 0 < abs(value) < LEAST_DELAY:", "if 0 < abs(value) < 0.0:", ("cli/test_refusals.py",),
     ),
     Mutant(
         "results/reference.py", "a damping that no log shows among those of other robots",

@@ -19,24 +19,24 @@ LITERAL_EDGES = (
         ("results/test_reference.py",),
     ),
     Mutant(
-        "checks/channels.py", "half of the doubt kills an encoder", "BEYOND_DOUBT = 5.0", "BEYOND_DOUBT = 2.5",
-        ("checks/test_edges_of_encoders.py",),
+        "faults/channels.py", "half of the doubt kills an encoder", "BEYOND_DOUBT = 5.0", "BEYOND_DOUBT = 2.5",
+        ("faults/test_edges_of_encoders.py",),
     ),
     Mutant(
-        "checks/joints/still_joints.py", "a spike in fifty samples is a motion", "MOST = (1.0, 99.0)",
-        "MOST = (0.5, 99.0)", ("checks/test_edges_of_encoders.py",),
+        "faults/joints/still_joints.py", "a spike in fifty samples is a motion", "MOST = (1.0, 99.0)",
+        "MOST = (0.5, 99.0)", ("faults/test_edges_of_encoders.py",),
     ),
     Mutant(
-        "checks/imu.py", "up may be half as wrong again", "RIGHT_ANGLE = np.radians(8)", "RIGHT_ANGLE = np.radians(12)",
-        ("checks/test_edges_of_imu.py",),
+        "faults/imu.py", "up may be half as wrong again", "RIGHT_ANGLE = np.radians(8)", "RIGHT_ANGLE = np.radians(12)",
+        ("faults/test_edges_of_imu.py",),
     ),
     Mutant(
-        "checks/gyroscope.py", "an accelerometer in g", "felt = acceleration[rows] / GRAVITY",
-        "felt = acceleration[rows]", ("checks/test_gyroscope.py",),
+        "faults/gyroscope.py", "an accelerometer in g", "felt = acceleration[rows] / GRAVITY",
+        "felt = acceleration[rows]", ("faults/test_gyroscope.py",),
     ),
     Mutant(
-        "checks/standing.py", "leaning little up to thirty degrees", "PUSHED = 2.0", "PUSHED = 4.0",
-        ("checks/test_edges_of_balance.py",),
+        "faults/standing.py", "leaning little up to thirty degrees", "PUSHED = 2.0", "PUSHED = 4.0",
+        ("faults/test_edges_of_balance.py",),
     ),
     Mutant(
         "estimation/residual_covariance.py", "the upper half of the cosines keeps its sign",

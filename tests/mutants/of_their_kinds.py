@@ -41,11 +41,11 @@ OF_THEIR_KINDS = (
         ("twin/test_replay.py",),
     ),
     Mutant(
-        "checks/imu.py",
+        "faults/imu.py",
         "a still gyroscope is dead on a still robot, too",
         "(moves and np.ptp(finite) == 0)",
         "np.ptp(finite) == 0",
-        ("checks/test_imu.py",),
+        ("faults/test_imu.py",),
     ),
     Mutant(
         "report/fleet.py",
@@ -132,11 +132,11 @@ OF_THEIR_KINDS = (
         ("feet/exclusion/test_edge_rolling.py",),
     ),
     Mutant(
-        "checks/air_readings.py",
+        "faults/air_readings.py",
         "a foot zeroed under load is blamed for what it reads",
         ' or robot.feet[name].contact == "always":',
         ":",
-        ("checks/test_air_readings.py",),
+        ("faults/test_air_readings.py",),
     ),
     Mutant(
         "feet/put_right/imu_of_steps.py",
@@ -195,11 +195,11 @@ OF_THEIR_KINDS = (
         ("robot_guess/test_zeros.py",),
     ),
     Mutant(
-        "checks/joints/names.py",
+        "faults/joints/names.py",
         "joints that legs share are each leg's own",
         "uses[joint] == 1]",
         "uses[joint] >= 1]",
-        ("checks/joints/test_names.py",),
+        ("faults/joints/test_names.py",),
     ),
     Mutant(
         "models/bush_model.py",
@@ -216,10 +216,10 @@ OF_THEIR_KINDS = (
         ("logs/readers/test_streams.py",),
     ),
     Mutant(
-        "checks/gyroscope.py",
+        "faults/gyroscope.py",
         "the rate before a gap for the one behind it",
         "np.append(False, np.diff(log.time) > 1.5 * log.period)",
         "np.append(np.diff(log.time) > 1.5 * log.period, False)",
-        ("checks/test_gyroscope.py",),
+        ("faults/test_gyroscope.py",),
     ),
 )

@@ -68,7 +68,7 @@ GUARDS = (
         "if _spread(held[:, edge]) < ", "if 0 * _spread(held[:, edge]) < ",
     ),
     Mutant(
-        "whole_body/sensor_faults.py", "a mended channel may spoil other rows",
+        "whole_body/sensor_calibration.py", "a mended channel may spoil other rows",
         "and np.all(after < HARMLESS * before)", "",
     ),
     Mutant(

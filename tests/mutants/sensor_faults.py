@@ -10,12 +10,12 @@ SENSOR_FAULTS = (
         "silent |= log.column(name) == 0", ("signals/test_dropouts.py",),
     ),
     Mutant(
-        "checks/joints/closed_chain.py", "the foot in the air may be lower than the one that carries",
-        "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("checks/joints/test_closed_chain.py",),
+        "faults/joints/closed_chain.py", "the foot in the air may be lower than the one that carries",
+        "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("faults/joints/test_closed_chain.py",),
     ),
     Mutant(
-        "checks/standing.py", "force sensors are turned one at a time only",
-        "{**ways, \"columns 'wrench.*'\": [*range(len(sensors))]}", "ways", ("checks/test_standing.py",),
+        "faults/standing.py", "force sensors are turned one at a time only",
+        "{**ways, \"columns 'wrench.*'\": [*range(len(sensors))]}", "ways", ("faults/test_standing.py",),
     ),
     Mutant(
         "sensors/newton_euler.py", "the first run of a log with gaps is all", "return long or", "return long[:1] or",
@@ -34,12 +34,12 @@ SENSOR_FAULTS = (
         ("signals/test_dropouts.py",),
     ),
     Mutant(
-        "checks/bush_axes.py", "feet beside each other are before each other",
-        "if x > BEFORE * y", "if y > BEFORE * x", ("checks/test_bush_axes.py",),
+        "faults/bush_frames.py", "feet beside each other are before each other",
+        "if x > BEFORE * y", "if y > BEFORE * x", ("faults/test_bush_axes.py",),
     ),
     Mutant(
-        "checks/log_checks.py", "rows that got lost are bursts",
-        "log.period < QUICK * (mean", "log.period < 4 * (mean", ("checks/test_log_checks.py",),
+        "faults/log_faults.py", "rows that got lost are bursts",
+        "log.period < QUICK * (mean", "log.period < 4 * (mean", ("faults/test_log_faults.py",),
     ),
     Mutant(
         "sensors/moment_fit.py", "another unit hides behind its prior",
@@ -93,20 +93,20 @@ SENSOR_FAULTS = (
         ("logs/readers/test_column_map.py",),
     ),
     Mutant(
-        "checks/joints/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
-        ("checks/joints/test_stepping_joints.py",),
+        "faults/joints/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
+        ("faults/joints/test_stepping_joints.py",),
     ),
     Mutant(
-        "checks/joints/stepping_joints.py", "the other leg may stand as well", "if turned[same] > TURNED:",
-        "if turned[same] >= 0:", ("checks/joints/test_stepping_joints.py",),
+        "faults/joints/stepping_joints.py", "the other leg may stand as well", "if turned[same] > TURNED:",
+        "if turned[same] >= 0:", ("faults/joints/test_stepping_joints.py",),
     ),
     Mutant(
-        "checks/gyroscope.py", "a gyroscope's bias turns", "integral = _centred(total[ends] - total[starts])",
-        "integral = total[ends] - total[starts]", ("checks/test_gyroscope.py",),
+        "faults/gyroscope.py", "a gyroscope's bias turns", "integral = _centred(total[ends] - total[starts])",
+        "integral = total[ends] - total[starts]", ("faults/test_gyroscope.py",),
     ),
     Mutant(
-        "checks/gyroscope.py", "small turns never tell", "min(LEAST_TURN, ABOVE_NOISE * float(noise))", "LEAST_TURN",
-        ("checks/test_gyroscope.py",),
+        "faults/gyroscope.py", "small turns never tell", "min(LEAST_TURN, ABOVE_NOISE * float(noise))", "LEAST_TURN",
+        ("faults/test_gyroscope.py",),
     ),
     Mutant(
         "signals/footfalls.py", "a lone sample lands a foot", "LONE = 5 ", "LONE = 1 ", ("signals/test_footfalls.py",),
@@ -145,8 +145,8 @@ SENSOR_FAULTS = (
         ("sensors/test_sensor_turns.py",),
     ),
     Mutant(
-        "checks/bush_link.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
-        ("checks/test_bush_link.py",),
+        "faults/bush_frames.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
+        ("faults/test_bush_link.py",),
     ),
     Mutant(
         "sensors/attitude_scale.py", "a tilt too small is one too large", "-found[0],", "found[0],",
@@ -237,11 +237,11 @@ SENSOR_FAULTS = (
         ("feet/assess/test_data_faults.py",),
     ),
     Mutant(
-        "checks/joints/still_joints.py", "a joint that stands alone is at rest", "if doubtful:", "if False:",
-        ("checks/joints/test_still_joints.py",),
+        "faults/joints/still_joints.py", "a joint that stands alone is at rest", "if doubtful:", "if False:",
+        ("faults/joints/test_still_joints.py",),
     ),
     Mutant(
-        "checks/joints/still_joints.py", "a spike is a motion", "MOST = (1.0, 99.0)", "MOST = (0.0, 100.0)",
-        ("checks/joints/test_still_joints.py",),
+        "faults/joints/still_joints.py", "a spike is a motion", "MOST = (1.0, 99.0)", "MOST = (0.0, 100.0)",
+        ("faults/joints/test_still_joints.py",),
     ),
 )  # fmt: skip

@@ -254,6 +254,6 @@ def test_seconds_are_added_up_by_reason() -> None:
     spans = [(1.0, 3.0, True, None), (3.0, 4.5, False, "slip"), (5.0, 7.0, True, None), (7.0, 8.0, False, "slip"),
              (8.0, 8.051, False, "gap"), (8.1, 8.149, False, "air")]  # fmt: skip
     (row,) = used_shares(Phase("a", "left", *span[:2], "double", *span[2:]) for span in spans)
-    assert row["seconds"] == pytest.approx(6.6)
-    assert row["served"] == pytest.approx(4.0)
-    assert row["reasons"] == "slip (2.5 s); gap (0.1 s)"
+    assert row.seconds == pytest.approx(6.6)
+    assert row.used == pytest.approx(4.0)
+    assert row.reasons == "slip (2.5 s); gap (0.1 s)"

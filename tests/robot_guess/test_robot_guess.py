@@ -30,9 +30,9 @@ from example_robots import (
     model,
 )
 from feet_trials import LINEAR
-from plantar.checks.log_checks import check_log
 from plantar.errors import LogError, RobotError
 from plantar.exporters.urdf.tree import UrdfTree
+from plantar.faults.log_faults import check_log
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log

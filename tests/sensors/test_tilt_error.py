@@ -12,8 +12,8 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
-from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY
+from plantar.faults.log_faults import check_log
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.settings import FeetSettings

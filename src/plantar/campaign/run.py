@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from threading import Lock
 from typing import Any, Final
 
 from plantar.campaign.choice import choice_rows
@@ -18,7 +19,6 @@ from plantar.campaign.compared import (
     parameters_beside,
 )
 from plantar.campaign.replay import ReplayRow, candidates, hands_of, record_rows, replay_rows
-from plantar.campaign.shares import shares
 from plantar.errors import MotionError
 from plantar.feet.identify import identify_feet
 from plantar.feet.select_motions import Selection, select_motions
@@ -41,6 +41,7 @@ PAPER_WAY: Final = FeetSettings(offset="shared", model="kelvin_voigt", wrench_de
 PAPER_WAY_NAME: Final = "the paper's way: one shared offset, spring and damper, no delay"
 
 Progress = Callable[[str], None]
+STEPS: Final = 20  # a line for every five percent
 
 
 @dataclass(frozen=True)
@@ -176,3 +177,22 @@ def _as_data(campaign: Campaign, preset: str, seed: int, truth: Feet) -> dict[st
 
 def _rows(rows: Sequence[ParameterBeside | DirectBeside | CrossBeside | ReplayRow]) -> list[dict[str, Any]]:
     return [asdict(row) for row in rows]
+
+
+def shares(what: str, count: int, progress: Callable[[str], None]) -> Callable[[str, float], None]:
+    """A function that takes a job's name and the share of it that is done, from any thread, and says now and then how
+    far `count` jobs are together."""
+    done: dict[str, float] = {}
+    said = -1
+    lock = Lock()
+
+    def report(job: str, share: float) -> None:
+        nonlocal said
+        with lock:
+            done[job] = share
+            step = int(STEPS * sum(done.values()) / count + 1e-9)
+            if step > said:
+                said = step
+                progress(f"{what}: {100 // STEPS * step} %")
+
+    return report

@@ -18,11 +18,8 @@ from plantar.twin.play import planned
 from plantar.twin.robots.description import Description
 from plantar.twin.robots.foot import CutFoot, cut_feet
 
-PLATE = (
-    0.8,
-    0.014,
-    0.012,
-)  # what stands for the ankle's plate: share of the sole, thickness, above the bush [m]
+# What stands for the ankle's plate: share of the sole, thickness and height above the bush [m].
+PLATE = (0.8, 0.014, 0.012)
 
 
 def write_campaign_scene(campaign: Campaign, path: Path) -> Path:

@@ -14,7 +14,7 @@ import typer
 import yaml
 
 import plantar
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.errors import PlantarError
 from plantar.inspection import inspect_log
 from plantar.logs.readers import open_log
@@ -29,9 +29,9 @@ PATH = re.compile(rf"(?<![\w./\\])(?:(?:[A-Za-z]:|~)[/\\]{INNER}?|[/\\]{INNER})"
 
 
 def run(
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    robot: options.Robot,
     logs: Annotated[list[Path], typer.Argument(help="Logs that show the trouble.", metavar="LOG...")],
-    memory: Memory = None,
+    memory: options.Memory = None,
 ) -> None:
     """What to send with a question: versions, the robot file's settings and what `inspect` says, as Markdown to paste.
 

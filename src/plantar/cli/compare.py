@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.exporters.job import LEAST_LOAD, Stance
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together
@@ -25,8 +25,8 @@ MILLI = 1e3
 
 
 def run(
-    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    result: options.FeetFile,
+    robot: options.Robot,
     logs: Annotated[
         list[Path], typer.Argument(help="Logs with joints, attitude and wrenches.", metavar="LOG...")
     ],
@@ -37,28 +37,20 @@ def run(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Folder for comparison.svg and comparison.json."),
     ] = None,
-    swing: Annotated[
-        float | None, typer.Option("--swing", help="As of `export`, for the contact; in rad.", metavar="RAD")
-    ] = None,
-    pivot: Annotated[
-        str, typer.Option("--pivot", help="As of `export`, for the contact.", metavar="PIVOT")
-    ] = "ground",
-    least_load: Annotated[
-        float, typer.Option("--least-load", help="As of `export`, for the contact.", metavar="SHARE")
-    ] = LEAST_LOAD,
-    memory: Memory = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+    swing: options.Swing = None,
+    pivot: options.Pivot = "ground",
+    least_load: options.LeastLoad = LEAST_LOAD,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Play logs' joint motion in MuJoCo on rigid feet, on exported joints and on exported contact, beside the record.
 
     Example: plantar compare out/feet/result.json robot.yaml squat.csv --out out/comparison
     """
-    try:
+    with needs("mujoco", "twin", "plantar compare"):
         from plantar.comparison.compare import SIMULATORS, compare, pooled
         from plantar.comparison.picture import write_picture
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "twin", "plantar compare") from error
     if simulator not in SIMULATORS:
         raise PlantarError("unknown simulator", value=simulator, valid=", ".join(SIMULATORS))
     if out is not None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.errors import PlantarError
 from plantar.logs.readers import motion_name, open_log
 from plantar.logs.save import ENDINGS, save_log
@@ -29,7 +29,7 @@ def run(
         ),
     ] = "parquet",
     robot: Annotated[Path | None, typer.Option("--robot", help=ROBOT_HELP, metavar="ROBOT.yaml")] = None,
-    memory: Memory = None,
+    memory: options.Memory = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not print what was assumed.")] = False,
 ) -> None:
     """A log in another format: a table with plantar's columns, or a ROS 2 bag.

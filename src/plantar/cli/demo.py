@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, progress, table
-from plantar.errors import MissingExtra
+from plantar.errors import needs
 from plantar.files import refuse_file
 from plantar.results.io import dump_json
 
@@ -33,7 +34,7 @@ def run(
     seed: Annotated[int, typer.Option(help="Of noise, biases and zeros.", min=0)] = 0,
     quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No tables, no progress.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:  # fmt: skip
     """The paper's campaign on a robot in MuJoCo whose feet are known: play, record, identify, validate, report.
 
@@ -42,11 +43,9 @@ def run(
 
     Example: plantar demo --out out/demo
     """
-    try:
+    with needs("mujoco", "all", "plantar demo"):
         from plantar.campaign import Course, run_campaign
         from plantar.campaign.present import write_campaign_report
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "all", "plantar demo") from error
     refuse_file(out)
     step = _progress(quiet)
     campaign = run_campaign(out, Course.quick() if quick else None, preset, seed, step)

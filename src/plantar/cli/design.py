@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from plantar.choices import one_of
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.notes import Note
@@ -78,8 +79,8 @@ def run(
             metavar="MOTIONS", help="'campaign': for comparison, the best of the paper's fourteen motions."
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Make a motion that identifies the feet as well as balance and joint limits allow,
     even if the stiffness is half or twice what you say.
@@ -90,12 +91,10 @@ def run(
 
     Example: plantar design robot.yaml --stiffness 500 --out motion.csv
     """
-    try:
+    with needs("mujoco", "twin", "plantar design"):
         from plantar.campaign.scene import write_plan_scene
         from plantar.design.story import DesignSettings, design_motion
         from plantar.design.writing.outputs import check_outputs, write_design
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
     if out.suffix.lower() != ".csv":
         raise PlantarError("has an unknown ending", path=out, valid=".csv")
     model = load_robot(robot)

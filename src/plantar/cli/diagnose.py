@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from pathlib import Path
-from typing import Annotated
 
-import typer
 from rich.markup import escape
 
-from plantar.cli.console.advice import advised
+from plantar.cli.console import options
 from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
+from plantar.cli.identify.feet_tables import advised
 from plantar.errors import PlantarError
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
@@ -18,8 +16,8 @@ from plantar.results.usage import used_shares
 
 
 def run(
-    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    result: options.FeetFile,
+    json: options.Json = False,
 ) -> None:
     """What limits each number of a result, and which recording would make it tighter.
 
@@ -29,7 +27,16 @@ def run(
     diagnosis, used = found.diagnosis, used_shares(found.phases)
     if json:
         rows = [asdict(row) for row in diagnosis]
-        print(dump_json({"schema": "plantar.diagnosis/1", "diagnosis": rows, "served": used}), end="")
+        print(
+            dump_json(
+                {
+                    "schema": "plantar.diagnosis/1",
+                    "diagnosis": rows,
+                    "served": [share.to_dict() for share in used],
+                }
+            ),
+            end="",
+        )
         return
     screen = console()
     verdicts = {(row.foot, row.axis, row.name): row.verdict for row in found.parameters}
@@ -49,9 +56,7 @@ def run(
         screen.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
-    shares = [
-        (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in used
-    ]
+    shares = [(one.motion, one.foot, f"{one.seconds:.1f}", f"{one.used:.1f}", one.reasons) for one in used]
     screen.print(
         table(
             "\nHow much of each log was used",

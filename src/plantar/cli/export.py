@@ -8,26 +8,15 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console import options
 from plantar.exporters import TARGETS, export
 from plantar.exporters.job import LEAST_LOAD
 
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
 MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat, URDF or USD; the result's own URDF if left out."
-SWING_HELP = (
-    "Rubber that slips, for a target that holds no slip: amplitude of the motions to be right for, in rad. "
-    "If left out: K and C nearest to the identified motions."
-)
 HYSTERESIS_HELP = (
     "mujoco-contact: leave what points cannot be, slip above all, to plantar.FootHysteresis in your simulation's "
     "loop."
-)
-PIVOT_HELP = (
-    "mujoco-contact: 'ground', or 'bush' for feet that turn about the bush centre as the robot's do; "
-    "the robot then stands lower, its soles in the ground."
-)
-LEAST_LOAD_HELP = (
-    "mujoco-contact: the least load that a foot does not give way under along z, of the robot's weight. "
-    "The less, the smaller the angle up to which K holds."
 )
 OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 
@@ -40,12 +29,10 @@ def run(
     out: Annotated[Path, typer.Option("--out", help="The file to write.", metavar="FILE")],
     model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
     with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
-    swing: Annotated[float | None, typer.Option("--swing", help=SWING_HELP, metavar="RAD")] = None,
+    swing: options.Swing = None,
     hysteresis: Annotated[bool, typer.Option("--hysteresis", help=HYSTERESIS_HELP)] = False,
-    pivot: Annotated[str, typer.Option("--pivot", help=PIVOT_HELP, metavar="PIVOT")] = "ground",
-    least_load: Annotated[
-        float, typer.Option("--least-load", help=LEAST_LOAD_HELP, metavar="SHARE")
-    ] = LEAST_LOAD,
+    pivot: options.Pivot = "ground",
+    least_load: options.LeastLoad = LEAST_LOAD,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No notes on what the target cannot hold.")
     ] = False,

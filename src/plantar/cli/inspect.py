@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import (
     SEVERITY_STYLE,
     VERDICT_STYLE,
@@ -29,11 +29,11 @@ from plantar.robot.model import load_robot
 
 
 def run(
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    robot: options.Robot,
     logs: Annotated[list[Path], typer.Argument(help="Logs to look at.", metavar="LOG...")],
     columns: Annotated[bool, typer.Option("--columns", help="Also the range of every column.")] = False,
-    memory: Memory = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot be used.")
     ] = False,

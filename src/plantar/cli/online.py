@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli.console.delay import WrenchDelay
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import (
     VERDICT_STYLE,
     console,
@@ -47,10 +46,10 @@ RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, places, 
 
 
 def run(
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    robot: options.Robot,
     log: Annotated[Path, typer.Argument(help="Log to replay.", metavar="LOG")],
     result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
-    wrench_delay: WrenchDelay = None,
+    wrench_delay: options.WrenchDelay = None,
     cutoff: Annotated[
         float | None,
         typer.Option(metavar="HZ", help="Of the filters before the regressions, in Hz; the result's, or 5."),
@@ -72,9 +71,9 @@ def run(
         ),
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page, on this machine alone.")] = 8080,
-    memory: Memory = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Replay a log through the estimator of controllers, sample by sample, as a controller would.
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.logs.inputs import open_together
@@ -18,16 +18,16 @@ from plantar.robot.model import load_robot
 
 
 def run(
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    robot: options.Robot,
     logs: Annotated[list[Path], typer.Argument(help="Logs to choose from.", metavar="LOG...")],
     compare: Annotated[
         str,
         typer.Option(metavar="MOTION,...", help="Motions to compare with the best set, separated by commas."),
     ] = "",
     largest: Annotated[int, typer.Option(help="Most logs in a set.", min=1, max=20)] = 6,
-    memory: Memory = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Rank logs, alone and in sets, by how much they say about each parameter of the feet.
 

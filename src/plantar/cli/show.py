@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, number, table
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
@@ -18,7 +19,7 @@ def run(
     result: Annotated[
         Path | None, typer.Argument(help="A result of `identify feet` to place.", metavar="RESULT.json")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    json: options.Json = False,
 ) -> None:
     """Foot stiffness that others published or configured, softest first, and your own among it.
 

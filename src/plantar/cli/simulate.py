@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.files import refuse_file
 from plantar.robot.model import load_robot
 
@@ -74,7 +75,7 @@ def run(
     days: Annotated[
         int, typer.Option(metavar="N", help="How many days 'fleet' has: a log a robot and day.", min=1)
     ] = 60,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.
 
@@ -92,14 +93,12 @@ def run(
 
     Example: plantar simulate Tilt3,Squat --out out/twin --preset sensors --seed 3
     """
-    try:
+    with needs("mujoco", "twin", "plantar simulate"):
         from plantar.motions import CAMPAIGN, DEMO
         from plantar.twin import PAPER, play_all, write_campaign
         from plantar.twin.own_motion import own_plan
         from plantar.twin.presets import DEFAULT
         from plantar.twin.robots import hrp2
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "twin", "plantar simulate") from error
     refuse_file(out)
     if motion == FLEET:
         _fleet(out, robots, days, preset, seed, quiet)

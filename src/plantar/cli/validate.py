@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, print_notes, progress
 from plantar.cli.identify.feet_tables import validation_table
 from plantar.feet.validate import scored_feet
@@ -19,12 +19,12 @@ from plantar.robot.model import load_robot
 
 
 def run(
-    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    result: options.FeetFile,
+    robot: options.Robot,
     logs: Annotated[list[Path], typer.Argument(help="Logs that the fit has not seen.", metavar="LOG...")],
-    memory: Memory = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Reconstruct the torque of unseen logs with identified feet and compare (table 3).
 

@@ -77,9 +77,11 @@ class DesignSettings:
 
 @dataclass(frozen=True)
 class Design:
-    """A motion and what it promises. `told`: the bush it was made for; `factors`: the range of stiffness it holds for;
-    `rehearsals`: by factor, the told stiffness among them; `pairs`: of
-    links that were watched for touching, 0 where the URDF brings no geometry."""
+    """A motion and what it promises.
+
+    `told`: the bush it was made for; `factors`: the range of stiffness it holds for; `rehearsals`: by factor, the told
+    stiffness among them; `pairs` of links that were watched for touching, 0 where the URDF brings no geometry.
+    """
 
     settings: DesignSettings
     robot: RobotModel
@@ -174,6 +176,61 @@ def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float,
     return known.stiffness, known.low, known.high
 
 
+@dataclass
+class _Attempt:
+    """A motion while its size is sought: larger once where there is room, smaller until it holds."""
+
+    coefficients: Array
+    first: list[float]  # factors of the stiffness at which it is rehearsed before the others
+    rehearsals: dict[float, Rehearsal] = field(default_factory=dict)  # of the motion as it is, by factor
+    share: float = 1.0  # the last one by which it was made smaller
+    may_grow: bool = True
+    fallback: tuple[Array, dict[float, Rehearsal]] | None = (
+        None  # motion and rehearsals before it was made larger
+    )
+
+    def shrink(self, share: float) -> None:
+        """A smaller motion. One that was made larger is as before: near the least stiffness all grows steeply."""
+        if self.fallback is None:
+            self.coefficients, self.rehearsals = share * self.coefficients, {}
+        else:
+            self.coefficients, self.rehearsals = self.fallback
+        self.fallback, self.share = None, share
+
+    def shrink_by_use(self, used: float) -> None:
+        """Smaller after rehearsals, by half of what is used too much; the next start where it did not hold."""
+        if self.fallback is None:
+            self.first = [factor for factor, one in self.rehearsals.items() if _used(one)[0] > 1.0]
+        self.shrink(max((1 - SPARE) / np.sqrt(used), SMALLER))
+
+    def grow(self, used: float, progress: Callable[[str], None]) -> None:
+        """Larger, once, where that is worth its rehearsals; after one made smaller only half of the way back."""
+        self.may_grow = False
+        grown = min((1 - SPARE) / np.sqrt(used), LARGER if self.share == 1.0 else self.share**-0.5)
+        if grown > WORTH:
+            progress(f"larger by {100 * (grown - 1):.0f} %: there is room")
+            self.fallback = self.coefficients, self.rehearsals
+            self.coefficients, self.rehearsals = grown * self.coefficients, {}
+
+    def lower_arms(self, lines: Lines) -> bool:
+        """Leave the arms out, where they move and the motion was not just made larger. False: nothing changed."""
+        still = lines.without(self.coefficients, "arms")
+        if self.fallback is not None or np.array_equal(still, self.coefficients):
+            return False
+        self.coefficients, self.rehearsals = still, {}
+        return True
+
+    def next_factors(self, factors: tuple[float, ...]) -> list[float]:
+        """At which stiffness to rehearse next: none are left, or before it grows the first ones tell enough."""
+        if self.may_grow and self.rehearsals:
+            return []
+        left = sorted(
+            (each for each in factors if each not in self.rehearsals), key=lambda each: each not in self.first
+        )
+        urgent = sum(each in self.first for each in left)
+        return left[: max(urgent, BESIDE)] if urgent else left
+
+
 def _rehearsed(
     robot: RobotModel,
     legs: Legs,
@@ -187,62 +244,40 @@ def _rehearsed(
     none does.
 
     A rehearsal takes seconds: the ends of the range come first, and after a motion was made smaller those at which it
-    did not hold. In the end all hold with the motion as it is. One that was made larger and does not hold is as before:
-    near the least stiffness all grows steeply.
+    did not hold. In the end all hold with the motion as it is.
     """
-    reason, tight, larger = "", [factors[0], factors[-1]], True
-    shrunk = 1.0  # the last share by which it was made smaller
-    before: Array | None = None  # it was made larger
-    ends = dict[float, Rehearsal]()  # rehearsals before that
-    known = dict[float, Rehearsal]()  # those of the motion that comes next
-
-    def smaller(share: float) -> Array:
-        nonlocal before, known, shrunk
-        motion, known = (share * coefficients, {}) if before is None else (before, ends)
-        before, shrunk = None, share
-        return motion
-
+    motion, reason = _Attempt(coefficients, [factors[0], factors[-1]]), ""
     for _ in range(ROUNDS):
         try:
-            trajectory = Trajectory.of("design", legs, lines, coefficients)
+            trajectory = Trajectory.of("design", legs, lines, motion.coefficients)
         except MotionError as error:
             reason = str(error)
             progress(f"smaller: {reason}")
-            coefficients = smaller(SMALLER)
+            motion.shrink(SMALLER)
             continue
         watched = self_collision(robot, trajectory.configurations)
         if watched.touching is not None:
             first, second, row = watched.touching
             reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
-            still = lines.without(coefficients, "arms")
-            quiet = before is None and not np.array_equal(still, coefficients)
+            quiet = motion.lower_arms(lines)
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
-            coefficients = still if quiet else smaller(SMALLER)
+            if not quiet:
+                motion.shrink(SMALLER)
             continue
-        plan, held, used = trajectory.plan(), {**known}, 0.0
-        while used <= 1.0 and len(held) < len(factors) and not (held and larger):
-            left = sorted((each for each in factors if each not in held), key=lambda each: each not in tight)
-            urgent = sum(each in tight for each in left)
-            asked = left[: max(urgent, BESIDE)] if urgent else left
-            found = {one.factor: one for one in rehearse(robot, plan, told, asked, progress)}
-            used, reason = max((_used(one) for one in found.values()), key=lambda each: each[0])
-            held |= found
-        if larger and used <= 1.0:
-            known, larger = held, False
-            # Not back to what did not hold: half of the way.
-            grown = min((1 - SPARE) / np.sqrt(used), LARGER if shrunk == 1.0 else shrunk**-0.5)
-            if grown > WORTH:
-                progress(f"larger by {100 * (grown - 1):.0f} %: there is room")
-                before, ends, known = coefficients, held, {}
-                coefficients = grown * coefficients
-            continue
-        if used <= 1.0:
+        plan, used = trajectory.plan(), 0.0
+        while used <= 1.0 and (asked := motion.next_factors(factors)):
+            found = rehearse(robot, plan, told, asked, progress)
+            used, reason = max(map(_used, found), key=lambda each: each[0])
+            motion.rehearsals |= {one.factor: one for one in found}
+        if used > 1.0:
+            progress(f"smaller: {reason}")
+            motion.shrink_by_use(used)
+        elif motion.may_grow:
+            motion.grow(used, progress)
+        else:
             progress("identify the feet from the rehearsals")
-            return coefficients, _with_results(robot, [held[factor] for factor in factors]), watched.pairs
-        progress(f"smaller: {reason}")
-        if before is None:
-            tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
-        coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER))
+            rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in factors])
+            return motion.coefficients, rehearsals, watched.pairs
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 

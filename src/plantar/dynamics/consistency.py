@@ -19,7 +19,7 @@ from scipy import sparse
 from plantar.conventions import Array
 from plantar.dynamics.base_parameters import INERTIA_ENTRIES
 from plantar.dynamics.equation import PER_LINK
-from plantar.errors import DataError, MissingExtra
+from plantar.errors import DataError, needs
 
 ROUNDNESS = 4.0  # of the reference body: its radius of gyration squared over the link's own
 SMALLEST_RADIUS = 0.01  # m: of gyration; thinner links count as this thick
@@ -118,10 +118,8 @@ def _keeps_floor(prior: Prior, u: Array) -> bool:
 
 def _constrained(square: Array, linear: Array, prior: Prior, places: Sequence[int]) -> Array:
     """min xᵀ square x / 2 - linearᵀ x over bodies that keep the floor, x[places] not negative."""
-    try:
+    with needs("clarabel", "inertia", "physically consistent parameters"):
         import clarabel
-    except ModuleNotFoundError as error:
-        raise MissingExtra("clarabel", "inertia", "physically consistent parameters") from error
     size, count = len(prior.cad), len(linear)
     unit = max(float(np.abs(linear).max(initial=0.0)), 1e-12)
     blocks, offsets = [], []

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import yaml
 
-from plantar.conventions import STIFFNESS_UNIT, Array
+from plantar.conventions import NORMAL95, STIFFNESS_UNIT, Array
 from plantar.exporters.bush import FootBush
 from plantar.exporters.source import robot_model
 from plantar.notes import Notes
@@ -29,7 +29,6 @@ GAINS: Final = ("sensor gain", "force gain", "torque gain")  # causes that scale
 SUM_ONLY: Final = "z_sum_only"  # the note of a result whose vertical stiffness is one number for all feet
 LEG_JOINTS: Final = 6  # between IMU and foot: each encoder's zero turns the foot by at most itself
 DELAY: Final = "delay"  # late sensors take K times what they are late off the damping
-NORMAL95: Final = 2 * 1.96  # standard deviations in a 95 % interval
 CAREFUL: Final = Uncertainty()  # of a result that does not say what its robot file may be off by
 # Standing feet do not show where they slip. From damp or dusty to dry floors, for rubber soles; not measured.
 FRICTION: Final = (0.4, 1.0)
@@ -131,7 +130,7 @@ def _relative(row: Mapping[str, Any]) -> float | None:
     if not value:
         return None
     if std is None and interval is not None:
-        std = (interval[1] - interval[0]) / NORMAL95
+        std = (interval[1] - interval[0]) / (2 * NORMAL95)
     return None if std is None else abs(float(std) / float(value))
 
 

@@ -10,7 +10,6 @@ from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
 from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
-from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.put_right.encoders_of_fits import (
@@ -24,6 +23,7 @@ from plantar.feet.put_right.encoders_of_fits import (
 from plantar.feet.put_right.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.result import feet_result
 from plantar.feet.settings import FeetSettings
+from plantar.feet.shared_hysteresis import with_shared_hysteresis
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.results.feet import FeetResult
@@ -90,7 +90,7 @@ def fit_prepared(
     ready, feet = (
         _with_imu_right(ready, progress) if told is None else _with_encoders_right(ready, told, progress)
     )
-    fitted = with_memory_of_others(feet)
+    fitted = with_shared_hysteresis(feet)
     between = between_all(list(fitted.values()))
     found = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})

@@ -7,8 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from plantar.checks.gyroscope import BY_LEANS, beside_leans
-from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.contact.deflection import BushState, foot_motions, loaded
 from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
@@ -16,6 +14,8 @@ from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.errors import RobotError
+from plantar.faults.gyroscope import BY_LEANS, beside_leans
+from plantar.faults.log_faults import check_log, finding_notes, refuse_impossible
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.freed_memory import return_freed
@@ -52,7 +52,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     findings: of `check_log`, where that has been asked already.
 
     Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
-    reads something impossible (degrees for radians, a flipped sign, swapped feet; see `checks`).
+    reads something impossible (degrees for radians, a flipped sign, swapped feet; see `faults`).
     """
     _require(robot)
     # Its samples are put right while it is checked; where time is wrong, an even grid could take any memory.

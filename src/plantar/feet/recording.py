@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, cast
@@ -141,39 +141,34 @@ class Recording:
     def with_imu_turned(self, turn: tuple[float, float, float]) -> Recording:
         """The recording with bush angles and rates as an IMU has seen them that is turned by `turn` [rad] about its own
         axes, to first order (`imu_turns`); as they are where a foot is in the air."""
-
-        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
-            return {foot: _plus(state, change[foot], self.period) for foot, state in states.items()}
-
         change = {foot: effects @ np.array(turn) for foot, effects in self.imu_turns.items()}
-        return replace(self, raw=right(self.raw), bushes=right(self.bushes)) if any(turn) else self
+        return (
+            self._changed(lambda foot, state: _plus(state, change[foot], self.period)) if any(turn) else self
+        )
 
     def with_encoders_later(self, by: float) -> Recording:
         """The recording with bush angles and rates as encoders show them that are read `by` later [s], to first order
         (`encoder_rates`)."""
-
-        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
-            return {
-                foot: _plus(state, by * self.encoder_rates[foot], self.period)
-                for foot, state in states.items()
-            }
-
-        return (
-            replace(self, raw=right(self.raw), bushes=right(self.bushes))
-            if by and self.encoder_rates
-            else self
-        )
+        if not by or not self.encoder_rates:
+            return self
+        return self._changed(lambda foot, state: _plus(state, by * self.encoder_rates[foot], self.period))
 
     def with_wrenches_later(self, by: float) -> Recording:
         """The recording with torques of force sensors that are read `by` later [s], to first order."""
 
-        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
-            slopes = {
-                foot: np.nan_to_num(differentiate(one.torque, self.period)) for foot, one in states.items()
-            }
-            return {foot: replace(one, torque=one.torque + by * slopes[foot]) for foot, one in states.items()}
+        def later(_: str, state: BushState) -> BushState:
+            slope = np.nan_to_num(differentiate(state.torque, self.period))
+            return replace(state, torque=state.torque + by * slope)
 
-        return replace(self, raw=right(self.raw), bushes=right(self.bushes)) if by else self
+        return self._changed(later) if by else self
+
+    def _changed(self, change: Callable[[str, BushState], BushState]) -> Recording:
+        """The recording with each foot's states changed, as measured and as filtered."""
+        raw, bushes = (
+            {foot: change(foot, state) for foot, state in states.items()}
+            for states in (self.raw, self.bushes)
+        )
+        return replace(self, raw=raw, bushes=bushes)
 
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""

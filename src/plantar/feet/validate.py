@@ -18,7 +18,8 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
-from plantar.results.feet import DelayEstimate, FeetResult, ValidationRow
+from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, ValidationRow
+from plantar.results.feet_rows import LinearEquivalent
 from plantar.results.usage import used_shares
 from plantar.sensors.delays.sensor_delay import SensorDelay
 
@@ -101,8 +102,8 @@ def _unscored(
                 continue
             (share,) = used_shares(recording.contacts[foot].phases(recording.name, foot, recording.time))
             text = f"{recording.name}: the {foot} foot is not scored: "
-            text += f"of {share['seconds']:.1f} s {share['served']:.1f} can be used. Left out: "
-            reasons = share["reasons"] or "nothing, but the result has no model of this foot"
+            text += f"of {share.seconds:.1f} s {share.used:.1f} can be used. Left out: "
+            reasons = share.reasons or "nothing, but the result has no model of this foot"
             notes.append(Note("not_scored", "warning", text + reasons))
     return notes
 
@@ -117,11 +118,12 @@ def _sensor_delay(stored: DelayEstimate | None) -> SensorDelay:
 
 def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | None:
     """The model of one axis as the result holds it, None where a number of it is missing."""
-    entry = next((row for row in result.models if (row.foot, row.axis) == (foot, axis)), None)
-    name = KelvinVoigt.name if entry is None else entry.model
-    if name not in MODELS:
-        raise DataError(f"the result's model '{name}' is unknown (valid: {', '.join(MODELS)})")
-    model = MODELS[name]
+    # Where the result has no entry.
+    plain = AxisModel(foot, axis, KelvinVoigt.name, "", LinearEquivalent(0.0, 0.0))
+    entry = next((row for row in result.models if (row.foot, row.axis) == (foot, axis)), plain)
+    if entry.model not in MODELS:
+        raise DataError(f"the result's model '{entry.model}' is unknown (valid: {', '.join(MODELS)})")
+    model = MODELS[entry.model]
     stored = {row.name: row.value for row in result.parameters if (row.foot, row.axis) == (foot, axis)}
     numbers = [stored.get(term) for term in (*model.terms, *model.shape_terms)]
     if any(number is None for number in numbers):
@@ -134,9 +136,9 @@ def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | No
         model=model,
         values=values[:count],
         shape=values[count:],
-        moment_arms=(0.0, 0.0) if entry is None else entry.moment_arms,
-        turned=0.0 if entry is None else entry.turned,
-        leans=0.0 if entry is None else entry.leans,
-        crosstalk=0.0 if entry is None else entry.crosstalk,
-        imu_turned=(0.0, 0.0, 0.0) if entry is None else entry.imu_turned,
+        moment_arms=entry.moment_arms,
+        turned=entry.turned,
+        leans=entry.leans,
+        crosstalk=entry.crosstalk,
+        imu_turned=entry.imu_turned,
     )

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any, Final
 
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.fleet.places import is_remote
 
 CONNECT: Final = 30  # s to wait for a scheduler
@@ -37,11 +37,9 @@ def connected(workers: int | None, scheduler: str | None, memory: int | None) ->
     Raises:
         MissingExtra: Dask is not installed. PlantarError: the scheduler does not answer.
     """
-    try:
+    with needs("distributed", "fleet", "plantar fleet run"):
         import dask
         from distributed import Client, LocalCluster
-    except ImportError as error:
-        raise MissingExtra(error.name or "distributed", "fleet", "plantar fleet run") from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters of it is said in one line
     with dask.config.set(SMALL):
         if scheduler is not None:

@@ -39,7 +39,7 @@ from plantar.whole_body.regularised_result import (
     identified_urdf,
     inertial_rows,
 )
-from plantar.whole_body.sensor_faults import calibrate
+from plantar.whole_body.sensor_calibration import calibrate
 from plantar.whole_body.settings import DynamicsSettings
 
 CALIBRATED: Final = 12  # logs that the sensors are calibrated on

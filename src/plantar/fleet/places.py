@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.files import READ_BLOCK, atomic_write
 
 WHOLE_PUTS: Final = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "memory"}
@@ -209,10 +209,8 @@ class Store:
 
 def _system(place: str) -> tuple[Any, str]:
     """The file system of a URL and the path in it."""
-    try:
+    with needs("fsspec", "fleet", place):
         import fsspec
-    except ImportError as error:
-        raise MissingExtra("fsspec", "fleet", place) from error
     try:
         system, path = fsspec.core.url_to_fs(place)
     except ImportError as error:

@@ -15,7 +15,7 @@ from plantar.fleet.manifest import Group
 from plantar.fleet.places import PlaceError, Stamp, Store, name_of, stamp_of
 from plantar.fleet.robots import FleetRobot, robot_at
 from plantar.fleet.tables import Written, write_tables
-from plantar.fleet.unit import UNITS, Failure, contents_of, read_unit, unit_file, unit_key
+from plantar.fleet.unit import UNITS, Failure, contents_of, readable_unit, unit_file, unit_key
 from plantar.fleet.work import Done, Task, compute
 
 # Groups in the cluster for each that it works on: workers never wait, the driver stays small.
@@ -120,13 +120,8 @@ def _stored(store: Store) -> tuple[dict[str, None], dict[tuple[str, Stamp], str]
     contents: dict[tuple[str, Stamp], str] = {}
     names = [name for name in store.names(UNITS) if name.endswith(".json")]
     for name, content in zip(names, store.read_each(names), strict=True):
-        try:
-            unit = read_unit(content or b"", name)
-        except PlaceError:
-            raise
-        except PlantarError:
-            continue
-        if name == unit_file(unit.key):
+        unit = readable_unit(content, name)
+        if unit is not None and name == unit_file(unit.key):
             finished[unit.key] = None
             contents |= contents_of(unit)
     return finished, contents

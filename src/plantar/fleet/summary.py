@@ -15,6 +15,7 @@ import pyarrow.compute as pc
 
 from plantar import __version__
 from plantar.choices import number_in
+from plantar.conventions import NORMAL95
 from plantar.fleet.alarms import Alarm, advice_for, alarm_of, percent_of
 from plantar.fleet.series import Days, Series, SeriesKey, by_day, series_of
 from plantar.fleet.statistics.changes import History, history_of
@@ -23,7 +24,6 @@ from plantar.fleet.statistics.random_effects import Mean, NestedMeans, nested_me
 SCHEMA: Final = "plantar.fleet/1"
 FALSE_ALARMS: Final = 1.0  # a unit and year
 WATCHED: Final = "stiffness"  # of what alarms are told: damping follows it, and depends on delays
-NORMAL: Final = 1.96  # deviations, of a 95 % interval
 NUMBERS = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", re.IGNORECASE)
 
 
@@ -230,7 +230,7 @@ def _level(series: Series, days: Days, history: History, mean: Mean) -> Level:
 
 def _with_shared(mean: Mean, series: Series) -> float:
     """Half of a mean's 95 % interval together with what its recordings share, at most what each of them reports."""
-    return float(np.hypot((mean.high - mean.low) / 2, NORMAL * float(np.median(series.stds))))
+    return float(np.hypot((mean.high - mean.low) / 2, NORMAL95 * float(np.median(series.stds))))
 
 
 def _advised(alarms: Sequence[Alarm]) -> tuple[Alarm, ...]:

@@ -84,6 +84,14 @@ def read_unit(content: bytes, place: str) -> Unit:
     return row_of(Unit, found, "unit", path)
 
 
+def readable_unit(content: bytes | None, place: str) -> Unit | None:
+    """`read_unit`, or None for no content and for a damaged unit, which is made again."""
+    try:
+        return None if content is None else read_unit(content, place)
+    except PlantarError:
+        return None
+
+
 def unit_key(robot: str, inputs: Sequence[tuple[Role, str, str]], settings: FeetSettings) -> str:
     """The key of a unit of work: its content, settings and plantar's version, and nothing of where it lies.
 

@@ -16,14 +16,14 @@ from plantar.errors import MissingExtra, NoRoom, PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.fleet.manifest import Log
-from plantar.fleet.places import PlaceError, Store, brought, content_sha256, name_of, stamp_of
+from plantar.fleet.places import Store, brought, content_sha256, name_of, stamp_of
 from plantar.fleet.robots import FleetRobot, robot_model
 from plantar.fleet.unit import (
     Failure,
     Unit,
     UnitInput,
     UnitRow,
-    read_unit,
+    readable_unit,
     result_file,
     rows_of_result,
     unit_file,
@@ -35,10 +35,8 @@ from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel
 
-Passing: Final = (
-    MissingExtra,
-    NoRoom,
-)  # errors of the machine, not of the logs: another run may not have them
+# Errors of the machine, not of the logs: another run may not have them.
+Passing: Final = (MissingExtra, NoRoom)
 ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -102,16 +100,8 @@ def task_key(task: Task, inputs: Sequence[UnitInput]) -> str:
 
 
 def kept(store: Store, key: str) -> Unit | None:
-    """A finished unit in the store; None where there is none, or a damaged one, which is made again."""
-    content = store.read(unit_file(key))
-    if content is None:
-        return None
-    try:
-        return read_unit(content, unit_file(key))
-    except PlaceError:
-        raise
-    except PlantarError:
-        return None
+    """A finished unit in the store; None where there is none that can be read."""
+    return readable_unit(store.read(unit_file(key)), unit_file(key))
 
 
 def one_thread() -> None:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from plantar.checks.log_checks import check_log
 from plantar.contact.phases import DOUBLE, SINGLE, SUPPORTS
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
+from plantar.faults.log_faults import check_log
 from plantar.feet.first_look import look_at
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import prepare_checked

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,10 +13,11 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pa_parquet
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError
 from plantar.files import atomic_write
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Bytes, layout_of
+from plantar.logs.save_ros import write_mcap
 from plantar.notes import Note
 
 if TYPE_CHECKING:
@@ -58,40 +58,19 @@ def frames_of(robot: RobotModel | None) -> dict[str, str]:
 
 
 def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[Note, ...]:
-    try:
-        from rosbags.rosbag2 import StoragePlugin, Writer
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise MissingExtra("rosbags", "logs", "writing MCAP") from error
     stamps = np.rint(log.time * 1e9).astype(np.int64)
     outside = (stamps < 0) | (stamps >= 2**31 * 10**9)
     if outside.any():
         first = float(log.time[outside][0])
         raise LogError("lies outside what a ROS stamp can hold", path=log.source, time=first)
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    with tempfile.TemporaryDirectory() as folder:
-        bag = Path(folder) / "bag"
-        with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-            topics = [
-                (writer.add_connection(topic, kind.replace("/", "/msg/"), typestore=store), rows)
-                for topic, kind, rows in _messages(log, stamps, frames)
-            ]
-            for row, stamp in enumerate(
-                stamps.tolist()
-            ):  # in time's order, so that a cut bag is a shorter one
-                for connection, rows in topics:
-                    writer.write(connection, stamp, rows[row].tobytes())
-        with atomic_write(path) as handle, open(next(bag.glob("*.mcap")), "rb") as source:
-            while block := source.read(2**22):
-                handle.write(block)
-    lost = sorted(
-        name for name in log.columns if name.startswith("joint.") and name.endswith(".acceleration")
-    )
-    return (
-        (Note("columns_lost", "warning", f"JointState holds no accelerations: {len(lost)} columns left out"),)
-        if lost
-        else ()
-    )
+    topics = [
+        (topic, kind.replace("/", "/msg/"), rows) for topic, kind, rows in _messages(log, stamps, frames)
+    ]
+    write_mcap(path, topics, stamps.tolist())
+    lost = sum(name.startswith("joint.") and name.endswith(".acceleration") for name in log.columns)
+    if not lost:
+        return ()
+    return (Note("columns_lost", "warning", f"JointState holds no accelerations: {lost} columns left out"),)
 
 
 def _messages(

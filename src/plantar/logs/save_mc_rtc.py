@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import MissingExtra
+from plantar.errors import needs
 from plantar.files import atomic_write
 
 MAGIC: Final = b"ANNE"  # version 0, which every mc_rtc reads
@@ -26,10 +26,8 @@ def save_mc_rtc(path: Path, time: Array, positions: Array, base: Array) -> None:
     A pose is stored as the rotation from world to body, row by row, and then the place of the body in the world.
     Raises MissingExtra without msgpack.
     """
-    try:
+    with needs("msgpack", "logs", "writing mc_rtc logs"):
         import msgpack
-    except ImportError as error:
-        raise MissingExtra("msgpack", "logs", "writing mc_rtc logs") from error
     into_body = np.swapaxes(base[:, :3, :3], 1, 2).reshape(-1, 9)
     poses = np.hstack([into_body, base[:, :3, 3]]).tolist()
     keys = [key for key, _ in KEYS]

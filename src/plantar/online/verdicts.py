@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
+from plantar.faults.log_faults import check_log, finding_notes, refuse_impossible
 from plantar.feet.assess.data_faults import UNMENDED, doubted
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -17,7 +17,7 @@ UNTOLD = "a robot file that is wrong does not show here, rubber with a memory in
 
 
 def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
-    """What the checks find in a log. Raises DataError where a sensor reads something impossible."""
+    """The faults of a log, as notes. Raises DataError where a sensor reads something impossible."""
     findings = check_log(robot, log)
     refuse_impossible(log, findings)
     return tuple(finding_notes(log, findings))

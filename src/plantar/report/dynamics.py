@@ -12,7 +12,7 @@ from plantar.pages import on_joints
 from plantar.report.content import Cell, Column, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
-from plantar.report.verdict import listed
+from plantar.report.verdict import LEADS, listed
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, DynamicsScore
 from plantar.results.io import result_path
 from plantar.results.numbers import interval, number, percent, unit, with_uncertainty
@@ -70,7 +70,7 @@ def _inertia_verdict(result: DynamicsResult) -> list[str]:
 
 def _joints_verdict(result: DynamicsResult) -> list[str]:
     sentences = []
-    for verdict, lead in (("usable", "Trust"), ("weak", "Use with care"), ("unidentifiable", "Do not use")):
+    for verdict, lead in LEADS.items():
         names = [
             f"{row.joint} {row.name.replace('_', ' ')}" for row in result.parameters if row.verdict == verdict
         ]

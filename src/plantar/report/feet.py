@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -13,12 +14,15 @@ from plantar.files import write_text
 from plantar.notes import kinds
 from plantar.pages import on_feet
 from plantar.report import tables
+from plantar.report.charts.chart import Chart
 from plantar.report.charts.loop import loop_charts
+from plantar.report.charts.strips import STRIP_REMARK, strip_charts
+from plantar.report.charts.unseen import unseen_charts
+from plantar.report.charts.zeros import ZERO_REMARK, zero_charts
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import get_ready, render
 from plantar.report.verdict import foot_verdicts, limits, reach, trust
-from plantar.report.walks import walk_section
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
 from plantar.results.residuals import FILE_NAMES, Track, read_residuals, residuals_path, tracks_of
@@ -113,3 +117,27 @@ def _tables(result: FeetResult) -> list[Table]:
     made += [tables.used_table(result.phases)] if result.phases else []
     made.append(tables.neighbour_table(result.parameters))
     return made
+
+
+@dataclass(frozen=True)
+class WalkSection:
+    """Its charts; lists are empty where there is nothing to show."""
+
+    strips: tuple[Chart, ...]
+    unseen: tuple[Chart, ...]
+    zeros: tuple[Chart, ...]
+    strip_remark: str = STRIP_REMARK
+    zero_remark: str = ZERO_REMARK
+
+
+def walk_section(result: FeetResult, tracks: Sequence[Track]) -> WalkSection | None:
+    """The section, None where no foot steps."""
+    if not result.stances:
+        return None
+    feet = {row.foot for row in result.stances}
+    read = [row for row in result.swing_zeros if row.foot in feet]
+    return WalkSection(
+        strips=tuple(strip_charts(result)),
+        unseen=tuple(unseen_charts(result, tracks)),
+        zeros=tuple(zero_charts(read)),
+    )

@@ -15,7 +15,7 @@ import pinocchio as pin
 
 from plantar.contact.polygon import convex_hull
 from plantar.conventions import ROTATIONAL_AXES, Axis
-from plantar.errors import MissingExtra
+from plantar.errors import needs
 from plantar.online.estimates import AxisEstimate, Contact, Flag, FootEstimate
 from plantar.online.replay import Replay
 from plantar.robot.model import RobotModel
@@ -53,10 +53,8 @@ class LiveView:
     """
 
     def __init__(self, robot: RobotModel, port: int = 8080) -> None:
-        try:
+        with needs("viser", "figures", "the live view"):
             import viser
-        except ImportError as error:
-            raise MissingExtra("viser", "figures", "the live view") from error
         with redirect_stdout(StringIO()):  # it announces itself there, where tables go
             self.server = viser.ViserServer("127.0.0.1", port, label="plantar online", verbose=False)
         self.server.initial_camera.position = CAMERA

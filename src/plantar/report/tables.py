@@ -15,6 +15,7 @@ from plantar.results.dynamics import DynamicsScore, JointParameter
 from plantar.results.feet import Comparison, FeetResult, Input, Offset, Parameter, ValidationRow
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 from plantar.results.reference import neighbours
+from plantar.results.usage import used_shares
 
 SETTING_UNITS = {"cutoff": "Hz", "edge_margin": "m", "window": "rad", "wrench_delay": "s"}
 
@@ -164,18 +165,11 @@ def _comparison(result: FeetResult, other: Comparison) -> list[Table]:
 def used_table(phases: Sequence[Phase]) -> Table:
     """How much of each log is used, and for what reasons the rest is not."""
     rows = []
-    for motion, foot in dict.fromkeys((phase.motion, phase.foot) for phase in phases):
-        mine = [phase for phase in phases if (phase.motion, phase.foot) == (motion, foot)]
-        whole = sum(phase.end - phase.start for phase in mine)
-        used = sum(phase.end - phase.start for phase in mine if phase.used)
-        reasons: dict[str, float] = {}
-        for phase in mine:
-            if not phase.used and phase.end > phase.start:  # of one sample nobody needs a reason
-                why = phase.reason or phase.support
-                reasons[why] = reasons.get(why, 0.0) + phase.end - phase.start
-        why_not = "; ".join(f"{why} ({number(seconds, 3)} s)" for why, seconds in reasons.items())
-        share = percent(100 * used / whole) if whole > 0 else MISSING
-        rows.append((motion, foot, number(whole, 3), number(used, 3), share, why_not or "nothing left out"))
+    for one in used_shares(phases):
+        why = "; ".join(f"{reason} ({number(seconds, 3)} s)" for reason, seconds in one.left_out.items())
+        share = percent(100 * one.used / one.seconds) if one.seconds > 0 else MISSING
+        lengths = (number(one.seconds, 3), number(one.used, 3), share)
+        rows.append((one.motion, one.foot, *lengths, why or "nothing left out"))
     columns = [*Column.words("motion", "foot"), Column("length", "s"), Column("used", "s"), Column("share")]
     columns += Column.words("left out because")
     return Table.of("What is used of each log", columns, rows)

@@ -11,6 +11,7 @@ from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.numbers import unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
+LEADS: Final = {"usable": "Trust", "weak": "Use with care", "unidentifiable": "Do not use"}
 SYMBOLS: Final[dict[str, str]] = {"stiffness": "K", "damping": "C"}
 BEYOND: Final = (
     "No interval holds for what these logs do not show: larger angles, another floor, colder or warmer rubber, a sole "
@@ -143,11 +144,7 @@ def widest(result: FeetResult) -> Diagnosis | None:
 def trust(result: FeetResult) -> tuple[str, ...]:
     """Sentences on what may be used, what only with care, and what not."""
     sentences = []
-    for verdict, lead in (
-        ("usable", "Trust"),
-        ("weak", "Use with care"),
-        ("unidentifiable", "Do not use"),
-    ):
+    for verdict, lead in LEADS.items():
         subjects: dict[str, list[str]] = {}
         for row in result.parameters:
             if row.verdict == verdict:

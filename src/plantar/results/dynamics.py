@@ -18,7 +18,7 @@ from plantar.results.dynamics_rows import BaseParameter, DynamicsScore, Inertial
 from plantar.results.feet_rows import Input
 from plantar.results.io import RESULT_LIMIT, dump_json, finite, read_result, result_path
 from plantar.results.residuals import read_table, residuals_path, write_table
-from plantar.results.stored import rows_of, value_of
+from plantar.results.stored import rows_of, table_of, value_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -117,23 +117,10 @@ class DynamicsResult:
         Columns: joint, name, unit, value, std, low, high (of the 95 % interval), verdict, reason; or link, name, unit,
         value, cad (the URDF's).
         """
-        import pyarrow as pa  # costs start-up
-
         if self.schema != JOINTS_SCHEMA:
-            schema = pa.schema(
-                [(name, pa.string()) for name in ("link", "name", "unit")]
-                + [(name, pa.float64()) for name in ("value", "cad")]
-            )
-            return pa.Table.from_pylist([asdict(row) for row in self.inertial_parameters], schema=schema)
-        schema = pa.schema(
-            [(name, pa.string()) for name in ("joint", "name", "unit")]
-            + [(name, pa.float64()) for name in ("value", "std", "low", "high")]
-            + [(name, pa.string()) for name in ("verdict", "reason")]
-        )
-        rows = [
-            asdict(row) | {"low": row.interval95[0], "high": row.interval95[1]} for row in self.parameters
-        ]
-        return pa.Table.from_pylist(rows, schema=schema)
+            return table_of(self.inertial_parameters, ("link", "name", "unit"), ("value", "cad"))
+        numbers = ("value", "std", "low", "high")
+        return table_of(self.parameters, ("joint", "name", "unit"), numbers, ("verdict", "reason"))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; numbers that are not finite become None."""

@@ -56,9 +56,8 @@ class DynamicsScore:
     mean_abs_error: float
     rms_error: float
     max_abs: float
-    percent_of_max: float | None = field(
-        default=None, kw_only=True
-    )  # the file leaves it out where it is None
+    # The file leaves it out where it is None.
+    percent_of_max: float | None = field(default=None, kw_only=True)
     zero_mean_abs: float
     cad_rms_error: float
     samples: int

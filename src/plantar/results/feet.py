@@ -27,7 +27,7 @@ from plantar.results.feet_rows import (
 )
 from plantar.results.io import dump_json, finite, read_result, result_path
 from plantar.results.residuals import read_table, residuals_path, write_table
-from plantar.results.stored import row_of, rows_of, value_of
+from plantar.results.stored import row_of, rows_of, table_of, value_of
 from plantar.results.walk_rows import StanceStiffness, SwingZero, WalkStiffness
 
 if TYPE_CHECKING:
@@ -39,12 +39,8 @@ __all__ = [
 ]  # fmt: skip
 
 FEET_SCHEMA: Final = "plantar.feet/1"
-_IF_ANY: Final = (
-    "comparisons",
-    "stances",
-    "walks",
-    "swing_zeros",
-)  # keys of the file only where there are rows
+# Keys of the file only where there are rows.
+_IF_ANY: Final = ("comparisons", "stances", "walks", "swing_zeros")
 
 
 @dataclass(frozen=True, repr=False)
@@ -159,20 +155,10 @@ class FeetResult:
             >>> plantar.FeetResult.load("out/feet").to_table().column("unit")[0].as_py()
             'N.m/rad'
         """
-        import pyarrow as pa  # costs start-up
-
-        schema = pa.schema(
-            [(name, pa.string()) for name in ("foot", "axis", "name", "unit")]
-            + [(name, pa.float64()) for name in ("value", "std", "low", "high", "relative_std_percent")]
-            + [(name, pa.string()) for name in ("verdict", "reason", "advice")]
+        numbers = ("value", "std", "low", "high", "relative_std_percent")
+        return table_of(
+            self.parameters, ("foot", "axis", "name", "unit"), numbers, ("verdict", "reason", "advice")
         )
-        rows = []
-        for row in self.parameters:
-            low, high = row.interval95 or (None, None)
-            entry = asdict(row)
-            del entry["interval95"]
-            rows.append(entry | {"low": low, "high": high})
-        return pa.Table.from_pylist(rows, schema=schema)
 
     def plot(self, foot: str, axis: str, *, motions: str | Sequence[str] = (), axes: Any = None) -> Any:
         """Torque over angle of one foot and axis, measured and model, as matplotlib axes; see `plantar.plot_torque`."""

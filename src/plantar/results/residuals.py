@@ -184,9 +184,8 @@ def _floats(table: Any, name: str, path: Path | None) -> Array:
 
     try:
         column = table.column(name).combine_chunks()
-        if column.null_count == 0 and (
-            pa.types.is_floating(column.type) or pa.types.is_boolean(column.type)
-        ):  # a cast would import what nothing else needs
+        plain = pa.types.is_floating(column.type) or pa.types.is_boolean(column.type)
+        if plain and column.null_count == 0:  # a cast would import what nothing else needs
             return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
         if pa.types.is_string(column.type):
             column = column.cast("bool")

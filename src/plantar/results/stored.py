@@ -1,9 +1,10 @@
-"""Rows of a result read back from JSON into their types; a file may come from anywhere, so every row is checked."""
+"""Rows of a result read back from JSON, each checked, since a file may come from anywhere; and as an Arrow table."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
@@ -13,6 +14,7 @@ from pydantic_core import ValidationError
 from plantar.errors import PlantarError
 
 if TYPE_CHECKING:
+    import pyarrow as pa
     from pydantic import TypeAdapter
 
 Row = TypeVar("Row")
@@ -70,6 +72,23 @@ def _infinite(value: object, hint: object) -> object:
         low, high = value
         return (-math.inf if low is None else low, math.inf if high is None else high)
     return value
+
+
+def table_of(
+    rows: Iterable[Any], before: Sequence[str], numbers: Sequence[str], after: Sequence[str] = ()
+) -> pa.Table:
+    """Dataclass rows as an Arrow table: columns of text, of numbers, of text; `low` and `high` end `interval95`."""
+    import pyarrow as pa  # costs start-up
+
+    schema = pa.schema(
+        [*((name, pa.string()) for name in before), *((name, pa.float64()) for name in numbers)]
+        + [(name, pa.string()) for name in after]
+    )
+    cells = []
+    for row in rows:
+        low, high = getattr(row, "interval95", None) or (None, None)
+        cells.append(asdict(row) | {"low": low, "high": high})
+    return pa.Table.from_pylist(cells, schema=schema)
 
 
 @cache

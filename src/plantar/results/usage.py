@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from plantar.contact.phases import Phase
@@ -11,29 +12,38 @@ from plantar.contact.phases import Phase
 LEAST = 0.05  # s: of less nobody needs a reason
 
 
-def used_shares(phases: Iterable[Phase]) -> list[dict[str, Any]]:
-    """Seconds, seconds that were used and the reasons for the others, by motion and foot, from a result's phases."""
+@dataclass(frozen=True)
+class UsedShare:
+    """Seconds of one foot in one motion, those of them that were used, and those left out by their reasons."""
+
+    motion: str
+    foot: str
+    seconds: float
+    used: float
+    left_out: Mapping[str, float]
+
+    @property
+    def reasons(self) -> str:
+        """What was left out, in one line: `tips (2.0 s); in the air (4.0 s)`."""
+        told = (f"{reason} ({spent:.1f} s)" for reason, spent in self.left_out.items() if spent >= LEAST)
+        return "; ".join(told)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As `plantar diagnose --json` prints it."""
+        head = {"motion": self.motion, "foot": self.foot, "seconds": self.seconds}
+        return head | {"served": self.used, "reasons": self.reasons}
+
+
+def used_shares(phases: Iterable[Phase]) -> list[UsedShare]:
+    """A share for each motion and foot of a result's phases."""
     seconds: dict[tuple[str, str], float] = defaultdict(float)
     used: dict[tuple[str, str], float] = defaultdict(float)
-    reasons: dict[tuple[str, str], dict[str, float]] = defaultdict(lambda: defaultdict(float))
+    left_out: dict[tuple[str, str], dict[str, float]] = defaultdict(lambda: defaultdict(float))
     for phase in phases:
         key, duration = (phase.motion, phase.foot), phase.end - phase.start
         seconds[key] += duration
         if phase.used:
             used[key] += duration
-        else:
-            reasons[key][phase.reason or ""] += duration
-    return [
-        {
-            "motion": motion,
-            "foot": foot,
-            "seconds": total,
-            "served": used[motion, foot],
-            "reasons": "; ".join(
-                f"{reason} ({spent:.1f} s)"
-                for reason, spent in reasons[motion, foot].items()
-                if spent >= LEAST
-            ),
-        }
-        for (motion, foot), total in seconds.items()
-    ]
+        elif duration > 0:
+            left_out[key][phase.reason or phase.support] += duration
+    return [UsedShare(*key, total, used[key], left_out[key]) for key, total in seconds.items()]

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 import pinocchio as pin
 
+from plantar.choices import nearest
 from plantar.conventions import Array, skew
 from plantar.errors import PlantarError
 from plantar.notes import Note, listing
@@ -42,7 +43,7 @@ def write_inertias(root: ET.Element, model: pin.Model, bodies: Mapping[str, Arra
     notes: list[Note] = []
     for name, parameters in bodies.items():
         if name not in links:
-            raise PlantarError(f"the URDF has no link '{name}'", valid=", ".join(list(links)[:5]))
+            raise PlantarError(f"the URDF has no link '{name}'", valid=nearest(name, links))
         if parameters[0] < 0:
             message = f"link '{name}' has the identified mass {parameters[0]:.4g} kg"
             raise PlantarError(message, valid="a mass that is not negative")

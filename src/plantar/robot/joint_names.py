@@ -9,18 +9,8 @@ from dataclasses import dataclass, field
 
 WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
 MEANT = {"l": "left", "r": "right"}
-SILENT = {
-    "joint",
-    "jnt",
-    "j",
-    "motor",
-    "actuator",
-    "link",
-    "position",
-    "pos",
-    "state",
-    "q",
-}  # say nothing of which
+# Words that say nothing of which joint it is.
+SILENT = {"joint", "jnt", "j", "motor", "actuator", "link", "position", "pos", "state", "q"}
 SIDES = re.compile(r"left|right")
 _NOTHING = "|".join(sorted(word for word in SILENT if len(word) > 1))
 AT_ENDS = re.compile(rf"^({_NOTHING})|({_NOTHING})$")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from typing import Any, Literal
 import numpy as np
 import pinocchio as pin
 
+from plantar.choices import nearest
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import RobotError
 from plantar.notes import Note
@@ -282,6 +282,5 @@ def _check(robot: RobotModel) -> None:
     keys += [("joint_names.renamed", name) for name in robot.joint_names_in_logs.renamed]
     for key, name in keys:
         if name not in robot.joint_names:
-            near = difflib.get_close_matches(name, robot.joint_names, n=3) or robot.joint_names[:3]
             message = f"{key}.{name}: the URDF has no such movable joint"
-            raise RobotError(message, path=robot.path, valid="one of " + ", ".join(near))
+            raise RobotError(message, path=robot.path, valid=f"one of {nearest(name, robot.joint_names)}")

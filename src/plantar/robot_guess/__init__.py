@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from plantar.checks.channels import named
-from plantar.checks.joints.names import check_joint_names, recorded_joints
-from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY, Array
 from plantar.errors import LogError
 from plantar.exporters.urdf.tree import UrdfTree
+from plantar.faults.channels import named
+from plantar.faults.joints.names import check_joint_names, recorded_joints
+from plantar.faults.log_faults import check_log
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.readers.urdf_names import with_urdf_names

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.checks.standing import UNEXPLAINED
 from plantar.conventions import FORCE, GRAVITY, Array
+from plantar.faults.standing import UNEXPLAINED
 from plantar.robot_guess.feet import Sole, box
 from plantar.robot_guess.seat import Seat, pressure, sensor_pose
 from plantar.robot_guess.stance import Stance

@@ -26,10 +26,8 @@ LONGEST = 0.45
 INERTIA_SHARE, USUAL_SHARE = 0.25, 0.4  # by which the depth by inertia, and the usual one, may be off
 OUTLINE_SHARE = 0.2  # of its length by which an outline that is not drawn may be off
 SHAPE_SPREAD, FRAME_SPREAD = 0.005, 0.005  # m: rubber and covers that a drawing leaves out
-TURNED, TURNED_SPREAD = (
-    1.2,
-    0.01,
-)  # a foot wider than long by this is drawn in other axes; m its outline may then be off
+# A foot wider than long by this ratio is drawn in other axes; its outline may then be off by this [m].
+TURNED, TURNED_SPREAD = 1.2, 0.01
 
 
 @dataclass(frozen=True)
@@ -71,10 +69,8 @@ def find_sole(tree: UrdfTree, model: pin.Model, biped: Biped, limb: Limb) -> Sol
             reason = f"the lowest points of the {tag} shapes{named}"
             depth, outline = (bottom if height is None else height), SHAPE_SPREAD
             if y1 - y0 > TURNED * (x1 - x0):  # meshes are stored in other axes than they are meant in
-                (x0, x1), (y0, y1) = (
-                    (-min(y1, -y0), max(y1, -y0)),
-                    (x0, x1),
-                )  # more foot before the ankle than behind
+                # More foot before the ankle than behind.
+                (x0, x1), (y0, y1) = (-min(y1, -y0), max(y1, -y0)), (x0, x1)
                 reason, outline = f"{reason}, which lie across, turned along the foot", TURNED_SPREAD
             return Sole(limb, rotation.T, box(x0, x1, y0, y1), depth, SHAPE_SPREAD, outline, reason, True)
     depth, spread, corners, reason = _by_inertia(model, limb, rotation, biped.reach) or _usual(biped.reach)

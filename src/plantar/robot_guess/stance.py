@@ -14,6 +14,7 @@ from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.robot.kinematics import KinematicTree, centre_of_mass
 from plantar.robot_guess.feet import Sole
 from plantar.signals.filters import low_pass
+from plantar.signals.segments import spread_out
 
 SAMPLES = 400  # of one log: gravity, balance and outline change slowly
 FEWEST = 20  # samples of a robot that stands: fewer say nothing of how
@@ -124,8 +125,7 @@ def _rows(
         if values is not None:
             whole &= np.isfinite(values)
     force = sum(np.linalg.norm(np.nan_to_num(wrench[:, FORCE]), axis=1) for wrench in wrenches)
-    rows = np.flatnonzero(whole & (force > CARRIES * weight))
-    return np.asarray(rows[:: max(1, rows.size // SAMPLES)], dtype=np.int64)
+    return spread_out(np.flatnonzero(whole & (force > CARRIES * weight)), SAMPLES)
 
 
 def _positions(model: pin.Model, log: MotionLog, rows: NDArray[np.int64]) -> Array:

@@ -21,10 +21,8 @@ from plantar.robot_guess.stance import FEWEST, Stance
 
 # Under load the usual force is nearer to up than this, in the sensor's right axes.
 STEEP = np.cos(np.radians(25))
-CLEARLY, SMALL = (
-    0.5,
-    0.01,
-)  # other axes are believed where they halve a change of the moment arm of 1 cm or more
+# Other axes are believed where they halve a change of the moment arm of 1 cm or more.
+CLEARLY, SMALL = 0.5, 0.01
 SOLE_AXES = "the foot's axes: x to the toes, z up"
 
 

@@ -53,6 +53,11 @@ def run_ends(valid: Mask, reach: int) -> Mask:
     return ends
 
 
+def spread_out(rows: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+    """About `most` of the rows (n,), evenly spread over them; all where they are fewer than twice as many."""
+    return rows[:: max(1, rows.size // most)]
+
+
 def steps_in(seconds: float, period: float) -> int:
     """How many samples a time takes, at least one: of a slow log, a short time is the next sample."""
     return max(1, round(seconds / period))

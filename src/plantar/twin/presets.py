@@ -9,12 +9,13 @@ from types import MappingProxyType
 from typing import Final
 
 import numpy as np
+import pinocchio as pin
 
+from plantar.conventions import GRAVITY
 from plantar.errors import PlantarError
 from plantar.robot.model import RobotModel
 from plantar.twin.bush import Feet
 from plantar.twin.robots import hrp2
-from plantar.twin.robots.gravity import gravitational_stiffness
 from plantar.twin.robots.true_robot import RobotSpread
 from plantar.twin.sensing.logger import Logger
 from plantar.twin.sensing.sensor_errors import SensorSpread
@@ -36,6 +37,17 @@ def sized_for(robot: RobotModel | None) -> float:
     if robot is None:
         return 1.0
     return round(gravitational_stiffness(robot) / gravitational_stiffness(hrp2.robot()), 3)
+
+
+def gravitational_stiffness(robot: RobotModel) -> float:
+    """m·g·h [N·m/rad], h the height of the centre of mass above the soles with all joints at neutral."""
+    model = robot.model
+    data, neutral = model.createData(), pin.neutral(model)
+    centre = np.array(pin.centerOfMass(model, data, neutral))
+    placements = [robot.frame(foot.sole.placement) for foot in robot.feet.values()]
+    soles = [data.oMi[joint] * place for joint, place in placements]
+    heights = [float(sole.rotation[:, 2] @ (centre - sole.translation)) for sole in soles]
+    return float(robot.mass * GRAVITY * np.mean(heights))
 
 
 @dataclass(frozen=True)

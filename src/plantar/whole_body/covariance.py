@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.dynamics.consistency import Normal
 from plantar.estimation.residual_covariance import cosine_covariance
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.regularised_fit import RegularisedFit
+from plantar.whole_body.regularised_fit import RegularisedFit, normal_of
 
 CHUNK = 2048  # samples whose regressor is held at a time
 # Weight where the inertial parameters are given: they have no deviation of their own.
@@ -46,8 +45,7 @@ def uncertainty_from(fit: RegularisedFit, scored: Iterable[tuple[Array, float]])
     scored: of each recording, as `score_covariance` gives it.
     """
     n_base, size = len(fit.base), len(fit.prior.cad)
-    regressor = np.hstack([fit.triangle[:, :n_base] @ fit.base.grouping, fit.triangle[:, n_base:-1]])
-    normal = Normal.of(regressor, fit.triangle[:, -1], fit.prior)
+    normal = normal_of(fit.base, fit.prior, fit.triangle)
     onto = np.zeros((n_base + len(normal.scale), size + len(normal.scale)))
     onto[:n_base, :size] = fit.base.grouping @ fit.prior.spread
     onto[n_base:, size:] = np.diag(normal.scale)

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.checks.log_checks import check_log, refuse_impossible
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
 from plantar.errors import DataError, RobotError
+from plantar.faults.log_faults import check_log, refuse_impossible
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -32,14 +32,12 @@ class Samples:
     positive: Mapping[int, tuple[bool, ...]] = field(default_factory=dict)
 
     def select(self, rows: slice | Mask) -> Samples:
-        return Samples(
-            self.name,
-            self.time[rows],
-            self.motion.select(rows),
-            {row: values[rows] for row, values in self.measured.items()},
-            {row: tuple(column[rows] for column in columns) for row, columns in self.extras.items()},
-            self.period,
-            self.positive,
+        return replace(
+            self,
+            time=self.time[rows],
+            motion=self.motion.select(rows),
+            measured={row: values[rows] for row, values in self.measured.items()},
+            extras={row: tuple(column[rows] for column in columns) for row, columns in self.extras.items()},
         )
 
 

@@ -56,6 +56,12 @@ class RegularisedFit:
         return rows
 
 
+def normal_of(base: BaseParameters, prior: Prior, triangle: Array) -> Normal:
+    """The normal equations of an R factor whose columns are base parameters, extras and the measured side."""
+    regressor = np.hstack([triangle[:, : len(base)] @ base.grouping, triangle[:, len(base) : -1]])
+    return Normal.of(regressor, triangle[:, -1], prior)
+
+
 class RegularisedProblem:
     """The folds of all recordings, and the CAD that fits to them are regularised towards."""
 
@@ -118,7 +124,7 @@ class RegularisedProblem:
         if len(self.folds) < 2:
             return []
         triangles = (self.folds.triangle(self.folds.but(out), weights) for out in self.every)
-        normals = [self._normal(triangle) for triangle in triangles]
+        normals = [normal_of(self.base, self.prior, triangle) for triangle in triangles]
         held_out = []
         for regularisation in REGULARISATIONS:
             progress(f"held-out error of regularisation weight {regularisation:g}")
@@ -133,16 +139,11 @@ class RegularisedProblem:
         errors = [self.folds.weighted_error([out], x, weights) for out, x in enumerate(fits)]
         return np.array(errors)
 
-    def _normal(self, triangle: Array) -> Normal:
-        base = len(self.base)
-        regressor = np.hstack([triangle[:, :base] @ self.base.grouping, triangle[:, base:-1]])
-        return Normal.of(regressor, triangle[:, -1], self.prior)
-
     def _regularised(self, normal: Normal, regularisation: float) -> Array:
         return consistent_fit(normal, self.prior, regularisation, self.folds.positive)
 
     def _fit(self, triangle: Array, regularisation: float) -> Array:
-        return self._regularised(self._normal(triangle), regularisation)
+        return self._regularised(normal_of(self.base, self.prior, triangle), regularisation)
 
     def _scale(self) -> float:
         """Mean square of what the CAD misses, so that the first weight has its unit."""

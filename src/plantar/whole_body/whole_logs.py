@@ -15,7 +15,7 @@ from plantar.robot.guesses import guess_notes
 from plantar.robot.model import RobotModel
 from plantar.whole_body.dataset import Body, Whole, prepare_whole
 from plantar.whole_body.equations import Calibration
-from plantar.whole_body.sensor_faults import calibrate
+from plantar.whole_body.sensor_calibration import calibrate
 from plantar.whole_body.settings import DynamicsSettings
 
 Progress = Callable[[str], None]

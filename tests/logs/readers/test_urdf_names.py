@@ -9,8 +9,8 @@ import pytest
 
 from biped import record, sway
 from biped_robot import make_robot
-from plantar.checks.log_checks import check_log
 from plantar.errors import LogError
+from plantar.faults.log_faults import check_log
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.save import save_log

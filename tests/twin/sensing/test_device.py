@@ -8,9 +8,9 @@ import pytest
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
-from plantar.twin.sensing.device import device_reading
 from plantar.twin.sensing.exact import exact_columns
 from plantar.twin.sensing.sensor_errors import SensorSpread, with_sensor_errors
+from plantar.twin.sensing.sensors import device_reading
 from twin_samples import tilted
 
 TIME = np.arange(4000) / 200.0

@@ -20,7 +20,7 @@ from plantar.twin.sensing.exact import bush_forces, exact_columns, truth_columns
 from plantar.twin.simulation import stepping
 from plantar.twin.simulation.physics import Physics, Slip
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
-from plantar.twin.simulation.rubber import Element
+from plantar.twin.simulation.stepping import Element
 from twin_samples import flung, plan, roll, short, swayed, tilted
 
 GRAVITY = 9.80665

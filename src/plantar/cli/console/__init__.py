@@ -1,1 +1,1 @@
-"""What commands share: tables and progress on the terminal, the option that bounds memory."""
+"""What commands share: options, and tables and progress on the terminal."""

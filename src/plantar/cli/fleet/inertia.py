@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.fleet.run import Scheduler, WorkerMemory, Workers
 from plantar.cli.identify import identification
@@ -23,14 +24,14 @@ from plantar.whole_body.settings import DynamicsSettings
 
 def run(
     manifest: Annotated[Path, typer.Argument(help="CSV file as for `fleet run`.", metavar="MANIFEST.csv")],
-    out: identification.Out,
+    out: options.Out,
     workers: Workers = None,
     scheduler: Scheduler = None,
     memory: WorkerMemory = None,
-    cutoff: identification.Cutoff = DynamicsSettings.cutoff,
-    as_recorded: identification.AsRecorded = False,
-    json: identification.Json = False,
-    quiet: identification.Quiet = False,
+    cutoff: options.Cutoff = DynamicsSettings.cutoff,
+    as_recorded: options.AsRecorded = False,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """`identify inertia` on all logs of a manifest with role fit, for one robot file: R factors that add up (eq. 2).
 

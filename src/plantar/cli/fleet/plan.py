@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
 from plantar.files import write_text
 from plantar.fleet.manifest import written
@@ -34,7 +35,7 @@ def run(
         Path | None,
         typer.Option("--out", metavar="MANIFEST.csv", help="The manifest; it is printed if left out."),
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """A manifest for `plantar fleet run` from files: a group for each robot and day, with times from the logs.
 

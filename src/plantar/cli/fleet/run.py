@@ -11,12 +11,10 @@ from typing import Annotated, Final
 
 import typer
 
-from plantar.cli.console.delay import WrenchDelay
-from plantar.cli.console.memory import size_in_bytes
+from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
 from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
-from plantar.cli.identify.feet import MODEL_HELP, OFFSET_HELP
-from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, FeetSettings, OffsetRule
+from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.files import refuse_file
 from plantar.fleet.cluster import SHARE, connected, dashboard, seen_by_workers
 from plantar.fleet.manifest import read_manifest
@@ -31,7 +29,7 @@ Workers = Annotated[
 ]
 Scheduler = Annotated[str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")]
 WorkerMemory = Annotated[
-    int | None, typer.Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
+    int | None, typer.Option("--memory", parser=options.size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
 ]
 EVERY: Final = 5.0  # s between lines of progress where stderr is no terminal
 
@@ -44,9 +42,9 @@ def run(
     workers: Workers = None,
     scheduler: Scheduler = None,
     memory: WorkerMemory = None,
-    offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
-    model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
-    wrench_delay: WrenchDelay = None,
+    offset: options.Offset = "per-motion",
+    model: options.Model = AUTOMATIC,
+    wrench_delay: options.WrenchDelay = None,
     json: Annotated[bool, typer.Option("--json", help="Print the counts as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no counts.")] = False,
 ) -> None:
@@ -56,8 +54,6 @@ def run(
 
     Example: plantar fleet run fleet.csv --out out/fleet
     """
-    if model not in MODEL_CHOICES:
-        raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
     if workers is not None and scheduler is not None:
         raise typer.BadParameter("a running cluster has workers of its own", param_hint="--workers")
     settings = FeetSettings(offset, model, wrench_delay=wrench_delay)

@@ -9,21 +9,15 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from plantar.cli.console.delay import WrenchDelay
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cores import begun
-from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
+from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, FeetSettings
 from plantar.files import refuse_file, write_text
 from plantar.logs.freed_memory import keep_freed
 from plantar.logs.inputs import open_in_turn, read_ahead, robot_of
 
-MODEL_HELP = (
-    f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
-    f"{AUTOMATIC} takes the one that predicts held-out motions best."
-)
-OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
 CUTOFF_HELP = (
     f"Cut-off of the zero-phase low-pass filter on angles and torques, in Hz. If left out: {DEFAULT_CUTOFF:g}, or less "
     "where angle and torque of a walk are not coherent up to there."
@@ -32,25 +26,23 @@ WINDOW_HELP = "Use only deflections up to this many degrees from the resting pos
 
 
 def run(
-    robot: identification.Robot,
-    logs: identification.Logs,
-    out: identification.Out,
-    validate: identification.Validate = None,
-    offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
-    model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
-    wrench_delay: WrenchDelay = None,
+    robot: options.Robot,
+    logs: options.Logs,
+    out: options.Out,
+    validate: options.Validate = None,
+    offset: options.Offset = "per-motion",
+    model: options.Model = AUTOMATIC,
+    wrench_delay: options.WrenchDelay = None,
     cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, metavar="HZ", min=0.1)] = None,
     window: Annotated[float | None, typer.Option(help=WINDOW_HELP, metavar="DEG", min=0.01)] = None,
-    memory: Memory = None,
-    json: identification.Json = False,
-    quiet: identification.Quiet = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Stiffness, damping and offset of each foot, in pitch and roll, from logs of a standing or walking robot.
 
     Example: plantar identify feet talos.yaml sway_*.csv --validate squat.csv --out out/feet
     """
-    if model not in MODEL_CHOICES:
-        raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
     reach = None if window is None else float(np.radians(window))
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
     refuse_file(out)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
 from plantar.notes import listing
 from plantar.pages import on_feet
-from plantar.results.feet import FeetResult, Parameter, ValidationRow
+from plantar.results.feet import FeetResult, Parameter, ValidationRow, Verdict
 from plantar.results.feet_text import over_all_motions
 
 if TYPE_CHECKING:
@@ -86,3 +86,18 @@ def _error_table(title: str, what: str, rows: list[tuple[str, ValidationRow, str
     ]  # fmt: skip
     columns = (what, "foot", "axis", "mean |error|", "rms", "max |torque|", "% of max", "offset alone", "")
     return table(f"{title} [N·m]", columns, cells, ["yellow" if lost else "" for *_, lost in rows])
+
+
+def advised(parameters: Sequence[Parameter]) -> Iterator[tuple[Verdict, str, str]]:
+    """Verdict, names and the rest of the line for numbers that are not usable; those with the same reason share a line,
+    and advice that was given is not repeated but named by whom it was given to."""
+    alike: dict[tuple[Verdict, str, str], list[str]] = {}
+    for row in parameters:
+        if row.verdict != "usable":
+            name = f"{row.foot} {row.axis} {row.name}"
+            alike.setdefault((row.verdict, row.reason, row.advice or ""), []).append(name)
+    given: dict[str, str] = {}
+    for (verdict, reason, advice), names in alike.items():
+        said = f"as for {given[advice]}" if advice in given else advice
+        given.setdefault(advice, names[0])
+        yield verdict, ", ".join(names), f"{reason}. Next: {said}." if advice else f"{reason}."

@@ -1,12 +1,10 @@
-"""What the verbs of `plantar identify` share: arguments, and the way from files to a result that is kept and shown."""
+"""What the verbs of `plantar identify` share: the way from files to a result that is kept and shown."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
-
-import typer
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.files import refuse_file
@@ -19,34 +17,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from plantar.robot.model import RobotModel
-
-Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
-Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]
-Out = Annotated[
-    Path, typer.Option("--out", metavar="DIR", help="Folder for result.json, the residuals and the report.")
-]
-Validate = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--validate",
-        metavar="LOG...",
-        help="One log or more that are not fitted: predicted and scored only (table 3).",
-    ),
-]
-Cutoff = Annotated[
-    float,
-    typer.Option(
-        metavar="HZ", help="Cut-off of the zero-phase low-pass filter on motion and forces, in Hz.", min=0.1
-    ),
-]
-AsRecorded = Annotated[
-    bool,
-    typer.Option(
-        "--as-recorded", help="Report wrench channels that contradict Newton's law, but do not correct them."
-    ),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No tables, no progress.")]
 
 
 class Result(Protocol):

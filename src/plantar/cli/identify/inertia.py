@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_inertia
@@ -13,15 +13,15 @@ from plantar.whole_body.settings import DynamicsSettings
 
 
 def run(
-    robot: identification.Robot,
-    logs: identification.Logs,
-    out: identification.Out,
-    validate: identification.Validate = None,
-    cutoff: identification.Cutoff = DynamicsSettings.cutoff,
-    as_recorded: identification.AsRecorded = False,
-    memory: Memory = None,
-    json: identification.Json = False,
-    quiet: identification.Quiet = False,
+    robot: options.Robot,
+    logs: options.Logs,
+    out: options.Out,
+    validate: options.Validate = None,
+    cutoff: options.Cutoff = DynamicsSettings.cutoff,
+    as_recorded: options.AsRecorded = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Masses, centres and inertias of a floating-base robot's links from IMU, encoders and feet (eq. 2).
 

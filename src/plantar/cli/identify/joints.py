@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.console.memory import Memory
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_joints
@@ -19,16 +19,16 @@ HELP = "Inertias: fitted together with the joints, first (eq. 2; floating bases)
 
 
 def run(
-    robot: identification.Robot,
-    logs: identification.Logs,
-    out: identification.Out,
-    validate: identification.Validate = None,
+    robot: options.Robot,
+    logs: options.Logs,
+    out: options.Out,
+    validate: options.Validate = None,
     inertia: Annotated[Inertia, typer.Option("--inertia", help=HELP)] = "together",
-    cutoff: identification.Cutoff = DynamicsSettings.cutoff,
-    as_recorded: identification.AsRecorded = False,
-    memory: Memory = None,
-    json: identification.Json = False,
-    quiet: identification.Quiet = False,
+    cutoff: options.Cutoff = DynamicsSettings.cutoff,
+    as_recorded: options.AsRecorded = False,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Friction, springs, offsets and actuator inertia of the joints from their torques (eq. 3).
 

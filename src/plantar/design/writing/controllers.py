@@ -17,7 +17,7 @@ from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import joint_order
 from plantar.logs.save_mc_rtc import save_mc_rtc
-from plantar.logs.save_trajectory import save_trajectory
+from plantar.logs.save_ros import save_trajectory
 from plantar.robot.model import RobotModel
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
@@ -111,9 +111,8 @@ class Compiled:
         """The <body> of that name; ExportError names the nearest that are there."""
         elements = {body.get("name", ""): body for body in root.iter("body")}
         if name not in elements:
-            near = difflib.get_close_matches(name, elements, n=3) or list(elements)[:5]
             message = f"has no body '{name}' (the ankle link of the robot file)"
-            raise ExportError(message, path=self.path, valid=", ".join(near))
+            raise ExportError(message, path=self.path, valid=nearest(name, elements))
         return elements[name]
 
     def geom_elements(self, body: ET.Element, name: str) -> Iterator[tuple[ET.Element, int]]:

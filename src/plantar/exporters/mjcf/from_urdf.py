@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from plantar.errors import ExportError, MissingExtra
+from plantar.errors import ExportError, needs
 from plantar.exporters.bush import FootBush
 from plantar.exporters.mjcf.file import load_mjcf
 from plantar.exporters.urdf.tree import UrdfTree
@@ -24,10 +24,8 @@ def opened(job: Job, purpose: str, notes: Notes) -> ET.Element:
 
     Raises ExportError when MuJoCo refuses it, MissingExtra, with the `purpose`, without mujoco.
     """
-    try:
+    with needs("mujoco", "twin", purpose):
         import mujoco  # noqa: F401
-    except ImportError as error:
-        raise MissingExtra("mujoco", "twin", purpose) from error
     assert job.model is not None
     if job.model.suffix.lower() == ".urdf":
         return mjcf_from_urdf(job.model, job.feet, notes)

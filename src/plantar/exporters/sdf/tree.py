@@ -6,16 +6,17 @@ frame and a joint's in its child link, unless `relative_to` names another frame 
 
 from __future__ import annotations
 
-import difflib
 import xml.etree.ElementTree as ET
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
-from plantar.exporters.urdf.geometry import box_corners, mesh_points
+from plantar.exporters.urdf.geometry import mesh_points, solid_corners
 from plantar.exporters.xml_file import load_xml, numbers, vector
 
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame
@@ -33,8 +34,8 @@ class SdfTree:
         if not holding:
             names = [link.get("name", "") for model in models for link in model.findall("link")]
             missing = next((ankle for ankle in ankles if ankle not in names), ankles[0])
-            near = difflib.get_close_matches(missing, names, n=3) or names[:5]
-            raise ExportError(f"has no model with the link '{missing}'", path=path, valid=", ".join(near))
+            message = f"has no model with the link '{missing}'"
+            raise ExportError(message, path=path, valid=nearest(missing, names))
         self.model = holding[0]
         self.links = {e.get("name", ""): e for e in self.model.findall("link")}
         self.joints = {e.get("name", ""): e for e in self.model.findall("joint")}
@@ -103,24 +104,19 @@ class SdfTree:
         return corners @ place[:3, :3].T + place[:3, 3]
 
     def _local_points(self, geometry: ET.Element) -> Array | None:
-        if geometry.find("box") is not None:
-            return box_corners(vector(geometry.findtext("box/size"), 3, "box size"))
-        for kind in ("cylinder", "capsule"):
-            if geometry.find(kind) is not None:
-                radius, length = (
-                    vector(geometry.findtext(f"{kind}/{k}"), 1, k)[0] for k in ("radius", "length")
-                )
-                return box_corners(
-                    np.array([2 * radius, 2 * radius, length + 2 * radius * (kind == "capsule")])
-                )
-        if geometry.find("sphere") is not None:
-            return box_corners(np.full(3, 2 * vector(geometry.findtext("sphere/radius"), 1, "radius")[0]))
         if geometry.find("mesh") is not None:
             name = geometry.findtext("mesh/uri", "").strip().removeprefix("file://").removeprefix("model://")
             starts = [self.path.resolve().parent, *self.path.resolve().parents[1:6]]
             found = next((start / name for start in starts if (start / name).is_file()), None)
             return mesh_points(found, vector(geometry.findtext("mesh/scale"), 3, "scale", 1.0))
+        for kind in geometry:
+            if (corners := solid_corners(kind.tag, partial(_size, kind))) is not None:
+                return corners
         return None
+
+
+def _size(kind: ET.Element, key: str, count: int) -> Array:
+    return vector(kind.findtext(key), count, f"{kind.tag} {key}")
 
 
 def pose_of(element: ET.Element) -> Array:

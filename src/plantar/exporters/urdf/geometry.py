@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,21 @@ def box_corners(size: Array) -> Array:
     signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
     corners: Array = signs * np.asarray(size)
     return corners
+
+
+def solid_corners(kind: str, read: Callable[[str, int], Array]) -> Array | None:
+    """Corners of the box around a shape, (8, 3), about its centre; None for what is no solid of URDF or SDFormat.
+
+    kind: box, cylinder, capsule or sphere. read: the numbers of one of its sizes, by name and count.
+    """
+    if kind == "box":
+        return box_corners(read("size", 3))
+    if kind == "sphere":
+        return box_corners(np.full(3, 2 * read("radius", 1)[0]))
+    if kind in ("cylinder", "capsule"):
+        radius, length = read("radius", 1)[0], read("length", 1)[0]
+        return box_corners(np.array([2 * radius, 2 * radius, length + 2 * radius * (kind == "capsule")]))
+    return None
 
 
 def mesh_points(path: Path | None, scale: Array) -> Array | None:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import difflib
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
 
+from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
-from plantar.exporters.urdf.geometry import box_corners, mesh_points
+from plantar.exporters.urdf.geometry import mesh_points, solid_corners
 from plantar.exporters.xml_file import load_xml, numbers, vector
 
 PARENTS_SEARCHED = 8  # directories above the URDF in which a package:// path may start
@@ -31,8 +31,7 @@ class UrdfTree:
 
     def link(self, name: str) -> ET.Element:
         if name not in self.links:
-            near = difflib.get_close_matches(name, self.links, n=3) or list(self.links)[:5]
-            raise ExportError(f"has no link '{name}'", path=self.path, valid=", ".join(near))
+            raise ExportError(f"has no link '{name}'", path=self.path, valid=nearest(name, self.links))
         return self.links[name]
 
     def ends(self, joint: ET.Element) -> tuple[str, str]:
@@ -102,20 +101,10 @@ class UrdfTree:
         if geometry is None or len(geometry) == 0:
             return None
         kind = geometry[0]
-        if kind.tag == "box":
-            return box_corners(vector(kind.get("size"), 3, "box size"))
-        if kind.tag in ("cylinder", "capsule"):
-            radius, length = (vector(kind.get(key), 1, key)[0] for key in ("radius", "length"))
-            return box_corners(
-                np.array([2 * radius, 2 * radius, length + 2 * radius * (kind.tag == "capsule")])
-            )
-        if kind.tag == "sphere":
-            return box_corners(np.full(3, 2 * vector(kind.get("radius"), 1, "sphere radius")[0]))
         if kind.tag == "mesh":
-            return mesh_points(
-                self.mesh_file(kind.get("filename", "")), vector(kind.get("scale"), 3, "scale", 1.0)
-            )
-        return None
+            scale = vector(kind.get("scale"), 3, "scale", 1.0)
+            return mesh_points(self.mesh_file(kind.get("filename", "")), scale)
+        return solid_corners(kind.tag, lambda key, size: vector(kind.get(key), size, f"{kind.tag} {key}"))
 
 
 def origin_of(element: ET.Element) -> Array:

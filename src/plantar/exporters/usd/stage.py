@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from plantar.errors import ExportError, MissingExtra
+from plantar.choices import nearest
+from plantar.errors import ExportError, needs
 from plantar.exporters.bush import FootBush
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.geometry import box_corners
@@ -22,10 +22,8 @@ def layer_above(model: Path) -> tuple[Any, Any]:
 
     Raises ExportError: no stage, other units than metre and kilogram. MissingExtra: no usd-core.
     """
-    try:
+    with needs("pxr", "usd", "export to a USD stage"):
         from pxr import Sdf, Usd
-    except ImportError as error:
-        raise MissingExtra("pxr", "usd", "export to a USD stage") from error
     stage = opened(model)
     layer = Sdf.Layer.CreateAnonymous(".usda")
     layer.subLayerPaths.append(str(model.resolve()))
@@ -73,9 +71,10 @@ def ankle_of(stage: Any, foot: FootBush, model: Path) -> Any:
         message = f"has several rigid bodies '{foot.ankle}': {paths}"
         raise ExportError(message, path=model, valid="a stage with one robot")
     names = [prim.GetName() for prim in bodies]
-    near = difflib.get_close_matches(identifier(foot.ankle), names, n=3) or names[:5]
     message = f"has no rigid body '{foot.ankle}' (the ankle link of the robot file)"
-    raise ExportError(message, path=model, valid=", ".join(near) or "a stage of the robot")
+    raise ExportError(
+        message, path=model, valid=nearest(identifier(foot.ankle), names) or "a stage of the robot"
+    )
 
 
 def standing_shapes(ankle: Any, foot: FootBush) -> list[Any]:

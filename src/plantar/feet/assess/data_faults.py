@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from plantar.checks.dead_band import DEAD_BAND
-from plantar.checks.gyroscope import IMU_LATE
-from plantar.checks.standing import LEANS, LEANS_LITTLE
+from plantar.faults.dead_band import DEAD_BAND
+from plantar.faults.gyroscope import IMU_LATE
+from plantar.faults.standing import LEANS, LEANS_LITTLE
 from plantar.feet.assess.sensor_hysteresis import HYSTERESIS
 from plantar.feet.place.place_notes import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording

@@ -13,12 +13,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.checks.air_readings import TORQUE_OFF
 from plantar.contact.phases import joined, widened
 from plantar.contact.polygon import edge_distances
 from plantar.contact.reasons import Reason
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_blocks
+from plantar.faults.air_readings import TORQUE_OFF
 from plantar.feet.exclusion.moved_edges import moved_inwards
 from plantar.feet.recording import Recording, filtered
 from plantar.feet.regression.regression_data import blocks_of

@@ -19,18 +19,18 @@ SLIPS = 0.01
 SMALL = 1.5 * SLIPS  # motions as large tell an element from a spring
 ALL_SHOWN = 2.0 * SLIPS  # a spring that explains everything so far is all there is
 TOO_SMALL = (
-    "bent by {:.2g} rad at most: a memory of the rubber that shows only beyond counts as stiffness; in larger motions "
-    "stiffness may be smaller (record larger motions)"
+    "bent by {:.2g} rad at most: hysteresis that needs larger motions would not show; in those the stiffness may be "
+    "smaller (record larger motions)"
 )
 UNTIMED = (
-    "sensors may be late by any time, which looks like a memory of the rubber: none is believed, and with one "
+    "the sensors' delays are not known, and a delay looks like hysteresis: none was fitted; with hysteresis the "
     "stiffness is smaller"
 )
 TORN = (
-    "gaps in the logs leave a memory of the rubber no time to show, and it counts as stiffness; with one, stiffness is "
+    "gaps in the logs leave hysteresis no time to show, and it counts as stiffness; with hysteresis the stiffness is "
     "smaller (record logs without gaps)"
 )
-UNBELIEVED = "sensors may be late by any time, which looks like it"
+UNBELIEVED = "the sensors' delays are not known, and a delay looks like it"
 
 
 def has_memory(model: BushModel) -> bool:

@@ -10,7 +10,7 @@ from typing import Final, Literal
 import numpy as np
 from scipy.special import stdtrit
 
-from plantar.conventions import Array
+from plantar.conventions import NORMAL95, Array
 from plantar.fleet.statistics.control_chart import Limits, limits_of, watch
 from plantar.fleet.statistics.trend import FEWEST, MONTH, Trend, trend_of
 
@@ -234,7 +234,7 @@ def _step(step: tuple[int, int], starts: Sequence[int], time: Array, values: Arr
 def _outlier(place: int, starts: Sequence[int], values: Array) -> Change:
     others = np.setdiff1d(_segment(place, starts, len(values)), [place])
     size = float(values[place] - np.median(values[others]))
-    scatter = 1.96 * float(np.std(values[others]))
+    scatter = NORMAL95 * float(np.std(values[others]))
     return Change("outlier", place, place, size, size - scatter, size + scatter)
 
 

@@ -26,20 +26,9 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-PACKED = (
-    zipfile.ZIP_STORED,
-    zipfile.ZIP_DEFLATED,
-)  # as NumPy writes them; others may ask for gigabytes to unpack
-BROKEN = (
-    zipfile.BadZipFile,
-    zlib.error,
-    OSError,
-    ValueError,
-    EOFError,
-    NotImplementedError,
-    RuntimeError,
-    KeyError,
-)
+# As NumPy writes them; others may ask for gigabytes to unpack.
+PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+BROKEN = (zipfile.BadZipFile, zlib.error, OSError, ValueError, EOFError, RuntimeError, KeyError)
 
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:

@@ -24,11 +24,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import LogError
 from plantar.logs.motion_log import COLUMN
 from plantar.logs.readers.force_cells import wrench_of_cells
-from plantar.logs.readers.roles import ORDERS, QUANTITIES, factor, nearest, quaternion_from_rpy
+from plantar.logs.readers.roles import ORDERS, QUANTITIES, factor, quaternion_from_rpy
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel

@@ -17,7 +17,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError, needs
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -48,10 +48,8 @@ IMU_KEYS = (
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a log. LogError: another kind of file, no time, nothing of use. MissingExtra: no msgpack."""
-    try:
+    with needs("msgpack", "logs", "reading mc_rtc logs"):
         import msgpack  # noqa: F401
-    except ImportError as error:
-        raise MissingExtra("msgpack", "logs", "reading mc_rtc logs") from error
     notes: list[Note] = []
     entries = _Entries(path, robot, limit)
     with open(path, "rb") as handle:
@@ -96,38 +94,30 @@ class _Entries:
         import msgpack
 
         left = self.path.stat().st_size - 4
-        broken = 0
+        broken, cut = 0, False
         while left >= 8:
             (size,) = struct.unpack("<Q", handle.read(8))
             left -= 8
             if size > left:
-                notes.append(
-                    Note("file_cut", "warning", f"{self.path.name} is cut; its whole entries were read")
-                )
+                cut = True
                 break
             if size > ENTRY_LIMIT:
                 raise LogError(f"an entry of {size} bytes", path=self.path, valid=f"at most {ENTRY_LIMIT}")
             left -= size
             self._pending_size += size
+            content = handle.read(size)
             try:
                 self._entry(
-                    msgpack.unpackb(
-                        handle.read(size), raw=False, strict_map_key=False, max_map_len=0, max_ext_len=0
-                    )
+                    msgpack.unpackb(content, raw=False, strict_map_key=False, max_map_len=0, max_ext_len=0)
                 )
             except (ValueError, TypeError, msgpack.UnpackException, RecursionError):
                 broken += 1
-        if 0 < left < 8:
+        if cut or 0 < left < 8:
             notes.append(Note("file_cut", "warning", f"{self.path.name} is cut; its whole entries were read"))
         self._gather()
         if broken:
-            notes.append(
-                Note(
-                    "messages_broken",
-                    "warning",
-                    f"{self.path.name}: {broken} entries cannot be decoded, left out",
-                )
-            )
+            text = f"{self.path.name}: {broken} entries cannot be decoded, left out"
+            notes.append(Note("messages_broken", "warning", text))
 
     def _entry(self, entry: Any) -> None:
         if not isinstance(entry, list) or len(entry) != 2 or not isinstance(entry[1], list):
@@ -183,15 +173,9 @@ class _Entries:
         if self._types.get(key) == FORCE_VECTOR:
             sensors = [] if self.robot is None else [foot.wrench.name for foot in self.robot.feet.values()]
             if key in sensors or key.endswith("ForceSensor"):
-                side = next(
-                    (
-                        s
-                        for s in sensors
-                        if key not in sensors and key.lower() == f"{s.lower()}footforcesensor"
-                    ),
-                    key,
-                )
-                return (Port(f"wrench.{side}.torque_first"),)
+                feet = {f"{sensor.lower()}footforcesensor": sensor for sensor in sensors}
+                name = key if key in sensors else feet.get(key.lower(), key)
+                return (Port(f"wrench.{name}.torque_first"),)
         return ()
 
     def _gather(self) -> None:

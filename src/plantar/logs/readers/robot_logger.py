@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError, needs
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -45,10 +46,8 @@ GROUPS = {
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a logger's file. LogError: not HDF5, or no signal of use. MissingExtra: no h5py."""
-    try:
+    with needs("h5py", "logs", "reading .mat logs"):
         import h5py
-    except ImportError as error:
-        raise MissingExtra("h5py", "logs", "reading .mat logs") from error
     notes: list[Note] = []
     try:
         with h5py.File(path, "r") as file:
@@ -78,11 +77,9 @@ def _signals(
         joints = _names(root, group)
         mine = given.get(name) or (wanted[name],)
         data[name] = (time, values)
+        unnamed = [port.role.startswith("joints.") and not port.joints for port in mine]
         roles[name] = tuple(
-            port
-            if port.joints or not port.role.startswith("joints.")
-            else Port(port.role, port.unit, port.sign, joints, port.take)
-            for port in mine
+            replace(port, joints=joints) if lacks else port for port, lacks in zip(mine, unnamed, strict=True)
         )
     return data, roles
 
@@ -100,11 +97,7 @@ def _signal(group: Any, name: str, limit: ReadLimit) -> tuple[Array, Array]:
         parts.append(np.asarray(source[()], dtype=np.float64))
     time = parts[0].ravel()
     values = parts[1].reshape(parts[1].shape[0], -1)
-    if (
-        values.shape[0] != time.size
-        and values.size % max(time.size, 1) == 0
-        and values.shape[-1] == time.size
-    ):
+    if values.shape[0] != time.size and values.shape[-1] == time.size:
         values = values.T
     if values.shape[0] != time.size:
         raise LogError(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=limit.path)

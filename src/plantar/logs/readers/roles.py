@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -78,12 +77,8 @@ def role_columns(
         return {f"{role}.{axis}": scale * values[:, i] for i, axis in enumerate("xyz")}
     if kind == "wrench" and rest:
         _length(values, 6, role, path)
-        stem, order = (
-            (role.removesuffix(".torque_first"), slice(3, 6))
-            if last == "torque_first"
-            else (role, slice(0, 3))
-        )
-        force, torque = values[:, order], values[:, 3:6] if last != "torque_first" else values[:, 0:3]
+        stem, halves = role.removesuffix(".torque_first"), (values[:, :3], values[:, 3:])
+        force, torque = halves[::-1] if last == "torque_first" else halves
         columns = {f"{stem}.force.{axis}": sign * force[:, i] for i, axis in enumerate("xyz")}
         return columns | {f"{stem}.torque.{axis}": sign * torque[:, i] for i, axis in enumerate("xyz")}
     valid = "joints.position, imu.<name>.angular_velocity, imu.<name>.orientation.rpy, wrench.<name>, ..."
@@ -106,8 +101,3 @@ def quaternion_from_rpy(rpy: Array) -> Array:
         cr * sp * cy + sr * cp * sy,
         cr * cp * sy - sr * sp * cy,
     ])  # fmt: skip
-
-
-def nearest(name: str, names: Sequence[str]) -> str:
-    """What may have been meant, for an error's last words."""
-    return ", ".join(difflib.get_close_matches(name, names, n=3) or list(names)[:6])

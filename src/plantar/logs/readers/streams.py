@@ -33,9 +33,8 @@ class Stream:
         return float(np.median(np.diff(self.time)))
 
     def take(self, rows: Mask) -> Stream:
-        return Stream(
-            self.name, self.time[rows], {name: values[rows] for name, values in self.columns.items()}
-        )
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        return Stream(self.name, self.time[rows], columns)
 
 
 def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.errors import DataError, MissingExtra
+from plantar.errors import DataError, needs
 from plantar.report.figures.plots import BLUE, LINE, RED
 from plantar.results.feet import FeetResult
 from plantar.results.feet_text import title_of_axis
@@ -86,9 +86,7 @@ def _chosen(result: FeetResult, foot: str, axis: str, motions: tuple[str, ...]) 
 
 
 def _new_axes() -> Axes:
-    try:
+    with needs("matplotlib", "figures", "drawing torque over angle"):
         from matplotlib import pyplot
-    except ImportError as error:
-        raise MissingExtra("matplotlib", "figures", "drawing torque over angle") from error
     made: Axes = pyplot.subplots(layout="constrained")[1]
     return made

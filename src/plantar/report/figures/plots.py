@@ -6,10 +6,17 @@ blue (9 to 13), trace of the feet black, support polygon blue, ZMP red (4 and 6)
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from plantar.errors import needs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
 from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +25,6 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.errors import DataError
 from plantar.files import atomic_write
 from plantar.report.content import Figure, MediaType
-from plantar.report.figures.panels import STYLE, panels
 from plantar.results.residuals import Track
 from plantar.signals.segments import runs
 
@@ -37,11 +43,31 @@ BAND: Final = 0.02
 COLUMNS: Final = 900
 """Time bins of a line; each keeps its smallest and largest sample, so peaks stay and files stay small."""
 
-_STYLE: Final = STYLE | {
+STYLE: Final = {
+    "font.size": 9,
+    "axes.grid": True,
+    "grid.color": "#e4e8ec",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+}
+_SAVED: Final = STYLE | {
     "svg.hashsalt": "plantar",  # the same figure is the same file
     "svg.fonttype": "path",
     "pdf.fonttype": 42,
 }
+
+
+def panels(
+    rows: int, columns: int, size: tuple[float, float], share_x: bool | Literal["col"] = False
+) -> tuple[Drawing, Any]:
+    """A figure of `size` [inches] with (rows, columns) panels. Raises MissingExtra without matplotlib."""
+    with needs("matplotlib", "figures", "drawing figures"):
+        import matplotlib
+        from matplotlib.figure import Figure as Drawing
+    with matplotlib.rc_context(STYLE):
+        drawing = Drawing(figsize=size, layout="constrained")
+        grid = drawing.subplots(rows, columns, squeeze=False, sharex=share_x)
+    return drawing, grid
 
 
 def bush_angles(tracks: Sequence[Track], motion: str) -> Drawing:
@@ -167,7 +193,7 @@ def _rendered(drawing: Drawing, kind: Format) -> bytes:
 
     buffer = BytesIO()
     metadata: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[kind]
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(_SAVED):
         drawing.savefig(buffer, format=kind, dpi=140, metadata=metadata)
     return _few_colours(buffer) if kind == "png" else buffer.getvalue()
 

@@ -9,8 +9,7 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.online.estimates import Contact
 from plantar.online.replay import Replay
-from plantar.report.figures.panels import panels
-from plantar.report.figures.plots import BLUE, COLUMNS, GREY, LINE, envelope
+from plantar.report.figures.plots import BLUE, COLUMNS, GREY, LINE, envelope, panels
 from plantar.signals.segments import runs
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ import numpy as np
 
 from plantar.contact.polygon import convex_hull
 from plantar.conventions import Array
-from plantar.report.figures.panels import panels
-from plantar.report.figures.plots import BLUE, RED
+from plantar.report.figures.plots import BLUE, RED, panels
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.report.figures.panels import panels
-from plantar.report.figures.plots import BLUE, LINE, RED, envelope, zmp
+from plantar.report.figures.plots import BLUE, LINE, RED, envelope, panels, zmp
 from plantar.twin.replay import Replayed
 
 if TYPE_CHECKING:

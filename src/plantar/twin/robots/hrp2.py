@@ -19,27 +19,9 @@ import yaml
 from plantar.conventions import Array
 from plantar.files import write_text
 from plantar.robot.model import RobotModel, load_robot
+from plantar.twin.robots import hrp2_facts as facts
 from plantar.twin.robots.description import Body, Description, Shape, box_inertia
-from plantar.twin.robots.hrp2_facts import (
-    ARM,
-    BUSH_HEIGHT,
-    CENTRE_OF_MASS,
-    HALF_SITTING_HEIGHT,
-    IMU_LINK,
-    IMU_XYZ,
-    INERTIA,
-    LEG,
-    MASS,
-    NAME,
-    SOLE_HEIGHT,
-    SOLE_SIZE,
-    TRUNK,
-    WAIST,
-    Row,
-    Y,
-    half_sitting,
-    postures,
-)
+from plantar.twin.robots.hrp2_facts import NAME, Row, Y, half_sitting, postures
 from plantar.twin.robots.urdf import urdf_text
 
 __all__ = ["NAME", "description", "half_sitting", "look", "postures", "robot", "write"]
@@ -74,7 +56,7 @@ def _body(name: str, joint: str, parent: int, row: Row, mirror: bool) -> Body:
 
 def _nominal() -> Description:
     """Geometry as published and a plausible first guess of the masses, right leg first."""
-    mass, centre, size = WAIST
+    mass, centre, size = facts.WAIST
     com, box = np.array(centre), np.array(size)
     bodies = [
         Body("WAIST", -1, mass=mass, com=com, inertia=box_inertia(mass, box), shapes=(Shape(com, box),)),
@@ -86,15 +68,15 @@ def _nominal() -> Description:
             bodies.append(_body(link, joint, parent, row, mirror))
             parent = len(bodies) - 1
 
-    add("RLEG", LEG, 0, mirror=False)
-    add("LLEG", LEG, 0, mirror=True)
+    add("RLEG", facts.LEG, 0, mirror=False)
+    add("LLEG", facts.LEG, 0, mirror=True)
     parent = 0
-    for joint, row in TRUNK:
+    for joint, row in facts.TRUNK:
         bodies.append(_body(joint.replace("JOINT", "LINK"), joint, parent, row, mirror=False))
         parent = len(bodies) - 1
-    chest = next(place for place, body in enumerate(bodies) if body.name == IMU_LINK)
-    add("RARM", ARM, chest, mirror=False)
-    add("LARM", ARM, chest, mirror=True)
+    chest = next(place for place, body in enumerate(bodies) if body.name == facts.IMU_LINK)
+    add("RARM", facts.ARM, chest, mirror=False)
+    add("LARM", facts.ARM, chest, mirror=True)
     return Description(NAME, tuple(bodies))
 
 
@@ -112,7 +94,7 @@ def _scaled(nominal: Description, change: Array) -> Description:
         mass = body.mass * factors[_key(body)]
         (box,) = body.shapes
         com, size = box.xyz, box.size
-        if body.name == IMU_LINK:
+        if body.name == facts.IMU_LINK:
             com, size = com + shift, size * growth
         bodies.append(replace(body, mass=mass, com=com, inertia=box_inertia(mass, size)))
     return replace(nominal, bodies=tuple(bodies))
@@ -134,14 +116,14 @@ def _solve_masses(nominal: Description) -> Array:
     # the published centre is over the middle of the feet, the description's over the waist
     goal = np.array(
         [
-            MASS,
-            CENTRE_OF_MASS[0] + ankle[0],
-            CENTRE_OF_MASS[1],
-            CENTRE_OF_MASS[2] - HALF_SITTING_HEIGHT,
-            *INERTIA,
+            facts.MASS,
+            facts.CENTRE_OF_MASS[0] + ankle[0],
+            facts.CENTRE_OF_MASS[1],
+            facts.CENTRE_OF_MASS[2] - facts.HALF_SITTING_HEIGHT,
+            *facts.INERTIA,
         ]
     )
-    size = np.array([MASS, 0.1, 0.1, 0.1, *INERTIA])
+    size = np.array([facts.MASS, 0.1, 0.1, 0.1, *facts.INERTIA])
 
     def residual(change: Array) -> Array:
         mass, centre, inertia = _scaled(nominal, change).mass_properties(positions)
@@ -176,18 +158,21 @@ def robot() -> RobotModel:
 
 
 def _robot_file() -> dict[str, object]:
-    x, y = SOLE_SIZE[0] / 2, SOLE_SIZE[1] / 2
+    x, y = facts.SOLE_SIZE[0] / 2, facts.SOLE_SIZE[1] / 2
     corners = [[x, y], [-x, y], [-x, -y], [x, -y]]
     return {
         "name": NAME,
         "urdf": "hrp2.urdf",
-        "imu": {"name": "chest", "link": IMU_LINK, "xyz": list(IMU_XYZ)},
+        "imu": {"name": "chest", "link": facts.IMU_LINK, "xyz": list(facts.IMU_XYZ)},
         "feet": {
             side: {
                 "ankle": f"{side[0].upper()}LEG_LINK5",
-                "bush": {"xyz": [0.0, 0.0, BUSH_HEIGHT]},
-                "wrench": {"name": f"{side}_foot", "xyz": [0.0, 0.0, SOLE_HEIGHT]},
-                "sole": {"xyz": [0.0, 0.0, SOLE_HEIGHT], "polygon": [list(corner) for corner in corners]},
+                "bush": {"xyz": [0.0, 0.0, facts.BUSH_HEIGHT]},
+                "wrench": {"name": f"{side}_foot", "xyz": [0.0, 0.0, facts.SOLE_HEIGHT]},
+                "sole": {
+                    "xyz": [0.0, 0.0, facts.SOLE_HEIGHT],
+                    "polygon": [list(corner) for corner in corners],
+                },
             }
             for side in ("right", "left")
         },

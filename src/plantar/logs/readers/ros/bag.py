@@ -75,10 +75,8 @@ def _check(topics: dict[str, Topic], path: Path, notes: list[Note]) -> None:
         raise LogError("holds no message that plantar reads", path=path, valid=valid)
     for topic in topics.values():
         if topic.broken:
-            text = (
-                f"{topic.name}: {topic.broken} of {topic.count} messages cannot be decoded and are left out"
-            )
-            notes.append(Note("messages_broken", "warning", f"{path.name}: {text}"))
+            text = f"{topic.broken} of {topic.count} messages cannot be decoded and are left out"
+            notes.append(Note("messages_broken", "warning", f"{path.name}: {topic.name}: {text}"))
 
 
 def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> list[Stream]:
@@ -89,19 +87,13 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
     headers = [series.clock(received=False) for _, series in sources]
     reason = _unusable(headers, [topic.name for topic, _ in sources])
     if received := reason is not None:
-        notes.append(
-            Note("receive_time", "warning", f"{path.name}: {reason}; times of receipt are used instead")
-        )
+        text = f"{path.name}: {reason}; times of receipt are used instead"
+        notes.append(Note("receive_time", "warning", text))
     first = min(int(series.clock(received).min()) for _, series in sources)
     zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
     if zero:
-        notes.append(
-            Note(
-                "time_origin",
-                "info",
-                f"{path.name}: time counts from {zero // 1_000_000_000} s of the bag's clock",
-            )
-        )
+        text = f"{path.name}: time counts from {zero // 1_000_000_000} s of the bag's clock"
+        notes.append(Note("time_origin", "info", text))
     streams = []
     seen: set[str] = set()
     owners: dict[str, str] = {}

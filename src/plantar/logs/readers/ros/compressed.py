@@ -5,7 +5,7 @@ from __future__ import annotations
 import bz2
 import zlib
 
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError, needs
 from plantar.logs.readers.read_limit import ReadLimit, shown
 
 CHUNK_LIMIT = 2**27  # bytes that one compressed chunk of a bag may hold: recorders write a few million
@@ -67,10 +67,8 @@ def decompress(kind: str, data: bytes | memoryview, limit: int = CHUNK_LIMIT) ->
 
 
 def _zstd(data: bytes | memoryview, limit: int) -> bytes:
-    try:
+    with needs("zstandard", "logs", "reading this bag"):
         import zstandard
-    except ImportError as error:
-        raise MissingExtra("zstandard", "logs", "reading this bag") from error
     try:
         with zstandard.ZstdDecompressor(max_window_size=2**27).stream_reader(bytes(data)) as stream:
             return bytes(stream.read(limit + 1))
@@ -79,8 +77,6 @@ def _zstd(data: bytes | memoryview, limit: int) -> bytes:
 
 
 def _lz4(data: bytes | memoryview, limit: int) -> bytes:
-    try:
+    with needs("lz4", "logs", "reading this bag"):
         import lz4.frame  # type: ignore[import-untyped]
-    except ImportError as error:
-        raise MissingExtra("lz4", "logs", "reading this bag") from error
     return bytes(lz4.frame.LZ4FrameDecompressor().decompress(bytes(data), max_length=limit + 1))

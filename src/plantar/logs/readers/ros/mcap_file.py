@@ -102,7 +102,7 @@ class _Scan(Scan):
     def _chunk(self, body: bytes, *, whole: bool = True) -> None:
         try:
             _, _, size, checksum = _CHUNK.unpack_from(body)
-            kind, at = _string(body, _CHUNK.size + 0)
+            kind, at = _string(body, _CHUNK.size)
             (length,) = struct.unpack_from("<Q", body, at)
             packed = body[at + 8 : at + 8 + min(length, len(body))]
             content = unpack_chunk(kind, packed, size, self.limit)

@@ -1,1 +1,0 @@
-"""Readings that cannot be: channels, IMU, wrenches of a robot that stands."""

@@ -1,0 +1,1 @@
+"""Faults of sensors, logs and robot files, each found and named before anything is fitted."""

@@ -1,0 +1,47 @@
+"""A torque channel that reads exactly nothing wherever it is small: a driver's dead band."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from plantar.conventions import GRAVITY, Array
+from plantar.faults.channels import named
+from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.notes import Finding
+from plantar.robot.model import RobotModel
+
+LOADED = 0.1  # of the weight: in the air a torque of nothing is right
+LEAST_SHARE = 0.01  # of the loaded samples that read exactly 0
+OFTEN = 5.0  # times as often as the next value: of one that reads in steps, 0 is one of many
+FINE = 200  # other values: fewer are a channel that reads in steps as large as its torque
+DEAD_BAND = "dead_band"
+
+
+def check_dead_bands(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """Torques of a loaded foot about its horizontal axes that are exactly 0 far more often than any other value."""
+    for foot in robot.feet.values():
+        wrench = log.wrench(foot.wrench.name)
+        loaded = np.linalg.norm(wrench[:, :3], axis=1) > LOADED * robot.mass * GRAVITY
+        columns = wrench_columns(foot.wrench.name)[3:5]
+        torques = wrench[loaded, 3:5].T
+        dead = [
+            column
+            for column, values in zip(columns, torques, strict=True)
+            if _share_at_zero(values) > LEAST_SHARE
+        ]
+        if dead:
+            text = (
+                f"{named(dead)}: exactly 0 far more often than any other value while the foot carries load: a "
+                "dead band of the driver, or lost values"
+            )
+            yield Finding(DEAD_BAND, f"{text} (valid: the torque as measured; empty cells for lost values)")
+
+
+def _share_at_zero(values: Array) -> float:
+    """The share of exact zeros; 0 where another value comes about as often, or there are few others."""
+    values = values[np.isfinite(values)]
+    others, counts = np.unique(values[values != 0], return_counts=True)
+    zeros = len(values) - int(counts.sum())
+    return zeros / len(values) if len(others) >= FINE and zeros > OFTEN * counts.max() else 0.0

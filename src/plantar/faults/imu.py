@@ -1,0 +1,109 @@
+"""An IMU that reads something impossible: units, the quaternion's order and sense, dead channels, a wrong sign."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.faults.gyroscope import Turns, check_gyroscope, rows_to_compare
+from plantar.faults.quaternions import misread, readings
+from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.notes import Finding
+from plantar.signals.segments import complete
+
+WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
+RIGHT_ANGLE = np.radians(8)  # likewise: less is a mount or an estimator
+
+
+def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
+    """Findings about one IMU's columns."""
+    orientation, turning = log.orientation(name), log.has_imu(name, "angular_velocity")
+    if turning:
+        yield from _dead_channels(log, imu_columns(name, "angular_velocity"), orientation)
+    accelerometer = log.has_imu(name, "linear_acceleration")
+    problem = _accelerometer_size(name, log) if accelerometer else None
+    if problem is not None:
+        yield problem
+    if orientation is None:
+        return
+    norm = np.linalg.norm(orientation, axis=1)
+    columns = f"columns 'imu.{name}.orientation.*'"
+    if not np.isfinite(norm).any():
+        yield Finding("dead_channel", f"{columns}: hold no value (valid: leave the columns out)", True)
+        return
+    usual = float(np.nanmedian(norm))
+    if not 0.9 < usual < 1.1:
+        yield Finding("quaternion_norm", f"{columns}: the quaternion's norm is {usual:.3g} (valid: 1)", True)
+        return
+    orientation = np.where(norm[:, None] > 0.5, orientation, np.nan)
+    turns = Turns.of(log, name, orientation) if turning else None
+    if turns is not None:
+        yield from check_gyroscope(name, log, orientation, turns)
+    if accelerometer and problem is None:
+        yield from _accelerometer_agrees(name, log, orientation, turns is not None and turns.agree)
+
+
+def _dead_channels(log: MotionLog, columns: Sequence[str], orientation: Array | None) -> Iterator[Finding]:
+    whole = orientation[complete(orientation)] if orientation is not None else np.zeros((0, 4))
+    moves = len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
+    for column in columns:
+        values = log.column(column)
+        finite = values[np.isfinite(values)]
+        if finite.size == 0 or (moves and np.ptp(finite) == 0):
+            yield Finding("dead_channel", f"column '{column}': never changes; is the channel dead?", True)
+
+
+def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
+    """Whether the accelerometer's usual norm is gravity's."""
+    norm = np.linalg.norm(log.linear_acceleration(name), axis=1)
+    where = f"columns 'imu.{name}.linear_acceleration.*'"
+    valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
+    if not np.isfinite(norm).any() or np.nanmax(norm) == 0:
+        return Finding("dead_channel", f"{where}: hold no value ({valid})", log.orientation(name) is None)
+    size = float(np.nanmedian(norm))
+    if 0.8 < size < 1.2:
+        return Finding(
+            "accelerometer_unit",
+            f"{where}: its norm is {size:.3g}, which looks like g, or like an acceleration without gravity ({valid})",
+            True,
+        )
+    if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
+        return Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")
+    return None
+
+
+def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: bool) -> Iterator[Finding]:
+    """The accelerometer's up against the quaternion's, which is as the columns say where the gyroscope `turns` so."""
+    acceleration = log.linear_acceleration(name)
+    rows = rows_to_compare(orientation, acceleration)
+    if rows is None:
+        return
+    up = acceleration[rows] / np.linalg.norm(acceleration[rows], axis=1, keepdims=True)
+    apart = {
+        reading: float(
+            np.median(
+                np.arccos(np.clip(np.einsum("ni,ni->n", rotation_from_quaternion(read)[:, 2], up), -1, 1))
+            )
+        )
+        for reading, read in readings(orientation[rows]).items()
+    }
+    best = min(apart, key=apart.__getitem__)
+    if apart["as it is"] < WRONG_ANGLE:
+        return
+    text = f"up differs from the accelerometer's by {np.degrees(apart['as it is']):.0f} deg"
+    if np.pi - apart["as it is"] < RIGHT_ANGLE:
+        where = f"columns 'imu.{name}.linear_acceleration.*'"
+        told = f"{where}: points down at rest, reversed, or the orientation's world has z down"
+        if turns:
+            told += "; the gyroscope turns as the orientation does"
+        elif apart[best] < RIGHT_ANGLE:
+            told += f"; or its quaternion is no w x y z: {best} it agrees"
+        valid = f"valid: proper acceleration, +{GRAVITY:.2f} m/s² upwards at rest; orientation body to world, z up"
+        yield Finding("sign", f"{told} ({valid})", True)
+    elif apart[best] < RIGHT_ANGLE:
+        yield misread(name, text, best)
+    else:
+        full = f"columns 'imu.{name}.orientation.*': {text} (valid: w x y z, body to world, z up)"
+        yield Finding("attitude_mismatch", full, True)

@@ -1,0 +1,135 @@
+"""What a stance weighs against each other: the moments of the feet's wrenches, gravity, and the IMU's up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.kinematics import centre_of_mass
+from plantar.robot.model import Imu, RobotModel
+from plantar.signals.segments import complete, spread_out
+
+SAMPLES = 50  # spread over the log: enough to tell
+LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
+# Ratio of two tilts, and their correlation whatever the direction, to be compared.
+SIMILAR, COHERENT = 1.5, 0.9
+
+
+@dataclass(frozen=True)
+class StanceSides:
+    """What a stance weighs against each other, in the root link's frame.
+
+    `moment_arms` (n, feet, 6, 3) [m]: level moment about the centre of mass of each component of each foot's wrench,
+    over the load; their sum is zero while the robot stands or sways. `up` (n, 3) as IMU and joints have it,
+    `push` (n, 3) the ground's force, both of unit length: on average alike.
+    """
+
+    moment_arms: Array
+    up: Array
+    push: Array
+
+    @property
+    def misfit(self) -> float:
+        return usual(self.moment_arms.sum(axis=(1, 2)))
+
+    @property
+    def lean(self) -> float:
+        """Angle between the ground's usual force and up [rad]."""
+        apart = float(np.linalg.norm(np.median(self.push - self.up, axis=0)))
+        return 2 * float(np.arcsin(min(1.0, apart / 2)))
+
+    @property
+    def turn(self) -> tuple[float, float]:
+        """Angle by which up's changes must be turned about the vertical to be the force's, and its deviation [rad]."""
+        parts = [side - side.mean(axis=0) for side in (self.up, self.push)]
+        axis = self.push.mean(axis=0)
+        axis /= max(float(np.linalg.norm(axis)), 1e-9)
+        up, push = (part - np.outer(part @ axis, axis) for part in parts)
+        along, across = float(np.sum(up * push)), float(np.sum(np.cross(up, push) @ axis))
+        sizes = float(np.sqrt(np.sum(up**2) * np.sum(push**2)))
+        # A swaying robot's forces also accelerate it, which is no tilt: only what is as large as the tilt counts.
+        if usual(up) < LEAST_TILT or not 1 / SIMILAR < usual(push) / usual(up) < SIMILAR:
+            return 0.0, np.inf
+        alike = min(1.0, float(np.hypot(along, across)) / sizes)
+        spread = np.sqrt((1 - alike**2) / len(up)) / alike if alike > COHERENT else np.inf
+        return float(np.arctan2(across, along)), float(spread)
+
+
+@dataclass(frozen=True)
+class Stance:
+    """Some samples of a loaded robot: attitude of the IMU (n, 4), joints (n, n_joints), wrench of each foot (n, 6)."""
+
+    robot: RobotModel
+    imu: Imu
+    orientation: Array
+    positions: Array
+    wrenches: list[Array]
+
+    def sides(self) -> StanceSides:
+        robot = self.robot
+        placements = [self.imu.placement, *(foot.wrench.placement for foot in robot.feet.values())]
+        centre, rotations, translations = self._poses([robot.frame(placement) for placement in placements])
+        attitude = rotation_from_quaternion(self.orientation)
+        up = np.einsum("nij,nj->ni", rotations[0], attitude[:, 2])
+        level = np.eye(3) - up[:, :, None] * up[:, None, :]
+        found, force = np.zeros((len(up), len(robot.feet), 6, 3)), np.zeros((len(up), 3))
+        for k, wrench in enumerate(self.wrenches):
+            axes = rotations[k + 1].transpose(0, 2, 1)
+            arm = (translations[k + 1] - centre)[:, None, :]
+            found[:, k, :3] = np.cross(arm, axes) * wrench[:, :3, None]
+            found[:, k, 3:] = axes * wrench[:, 3:, None]
+            force += np.einsum("nij,ni->nj", axes, wrench[:, :3])
+        size = np.maximum(np.linalg.norm(force, axis=1), 1.0)[:, None]
+        return StanceSides(found @ level[:, None] / size[:, None, None], up, force / size)
+
+    def reversed_joint(self, joint: int) -> Stance:
+        positions = self.positions.copy()
+        positions[:, joint] *= -1
+        return replace(self, positions=positions)
+
+    def exchanged_joints(self, first: int, second: int) -> Stance:
+        positions = self.positions.copy()
+        positions[:, [first, second]] = positions[:, [second, first]]
+        return replace(self, positions=positions)
+
+    def exchanged_wrenches(self) -> Stance:
+        return replace(self, wrenches=self.wrenches[::-1])
+
+    def turned_wrenches(self, feet: Sequence[int], degrees: int) -> Stance:
+        """What the sensors of some feet read if they sit turned farther about their own z axes."""
+        turn = np.kron(np.eye(2), pin.rpy.rpyToMatrix(0.0, 0.0, np.radians(degrees)))
+        return replace(self, wrenches=[w @ turn.T if k in feet else w for k, w in enumerate(self.wrenches)])
+
+    def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
+        """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
+        rotations, places = self.robot.tree.poses(self.positions)
+        turns = [rotations[carrier] @ placement.rotation for carrier, placement in frames]
+        at = [places[carrier] + rotations[carrier] @ placement.translation for carrier, placement in frames]
+        return centre_of_mass(self.robot.model, rotations, places), np.array(turns), np.array(at)
+
+
+def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:
+    """Samples in which the feet carry the robot, or None where there are too few."""
+    imu = robot.imu
+    orientation = log.orientation(imu.name) if imu is not None else None
+    if imu is None or orientation is None or len(robot.feet) != 2:
+        return None
+    wrenches = [foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()]
+    positions = log.positions(robot)
+    whole = complete(orientation, positions, *wrenches)
+    whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
+    loaded = whole & (sum(np.abs(w[:, 2]) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
+    rows = spread_out(np.flatnonzero(loaded), SAMPLES)
+    if rows.size < 10:
+        return None
+    return Stance(robot, imu, orientation[rows], positions[rows], [wrench[rows] for wrench in wrenches])
+
+
+def usual(vectors: Array) -> float:
+    """Usual length of vectors (n, 3): the median, which a few bad samples do not move."""
+    return float(np.median(np.linalg.norm(vectors, axis=1)))

@@ -1,0 +1,152 @@
+"""Encoders that died: a position that stands still while the velocity beside it goes on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from feet_trials import noisy
+from plantar.errors import DataError
+from plantar.faults.channels import check_channels
+from plantar.faults.log_faults import check_log
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+JOINT = "right_ankle_pitch"
+
+
+def held(log: MotionLog, start: int, stop: int) -> MotionLog:
+    """The log in which one encoder repeats its value between two samples."""
+    name = f"joint.{JOINT}.position"
+    values = log.column(name).copy()
+    values[start:stop] = values[start]
+    return log.with_columns({name: values})
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0, 2001), (700, 2001), (900, 1000)])
+def test_a_position_that_stands_while_its_velocity_turns_is_refused(
+    robot: RobotModel, start: int, stop: int
+) -> None:
+    log = held(record(sway()), start, stop)
+    found = [finding for finding in check_log(robot, log) if "its velocity" in finding.text]
+    assert len(found) == 1
+    assert found[0].code == "dead_channel"
+    assert found[0].fatal
+    assert f"joint.{JOINT}.position" in found[0].text
+    assert f"t = {log.time[start]:g}" in found[0].text
+    with pytest.raises(DataError, match="the encoder is dead"):
+        identify_feet(robot, [log])
+
+
+def test_dead_encoders_are_told_in_the_order_of_their_names(robot: RobotModel) -> None:
+    log = record(sway())
+    joints = [f"{foot}_ankle_{axis}" for foot in ("left", "right") for axis in ("pitch", "roll")]
+    for joint in joints:
+        values = log.column(f"joint.{joint}.position")
+        log = log.with_columns({f"joint.{joint}.position": np.full(len(log), values[0])})
+    told = [finding.text for finding in check_channels(robot, log) if finding.code == "dead_channel"]
+    assert [text.split("'")[1] for text in told] == [f"joint.{joint}.position" for joint in joints]
+
+
+def test_coarse_encoders_and_still_joints_are_not_dead(robot: RobotModel) -> None:
+    log = record(sway())
+    position, velocity = f"joint.{JOINT}.position", f"joint.{JOINT}.velocity"
+    coarse = log.with_columns({position: np.round(log.column(position) / 5e-3) * 5e-3})
+    still = log.with_columns({position: np.full(len(log), 0.1), velocity: np.full(len(log), 0.02)})
+    for each in (coarse, still):
+        assert not dead(each, robot)
+
+
+def test_a_joint_that_stands_and_then_moves_far_is_not_dead(robot: RobotModel) -> None:
+    """As of a robot that stands before it falls: the mean of its velocity is motion, not a bias."""
+    log = record(sway())
+    position, velocity = f"joint.{JOINT}.position", f"joint.{JOINT}.velocity"
+    late = np.maximum(log.time - 8.0, 0.0)
+    falls = log.with_columns({position: 0.05 * late**2, velocity: 0.1 * late})
+    assert not dead(falls, robot)
+    # The same with a bias, which the rest of the log shows, and with one that the joint's motion hides.
+    assert not dead(falls.with_columns({velocity: 0.1 * late + 0.02}), robot)
+    assert not dead(falls.with_columns({velocity: 0.08 * late}), robot)
+
+
+def test_a_velocity_that_cannot_be_trusted_refuses_no_log(robot: RobotModel) -> None:
+    """Noise adds up to a path, and so does a velocity that parts from its position also while both move."""
+    log = held(record(sway()), 700, 1300)
+    velocity = f"joint.{JOINT}.velocity"
+    noise = np.random.default_rng(0).normal(0.0, 5.0, len(log))
+    for other in (noise, 3.0 * np.cos(log.time)):
+        found = check_log(robot, log.with_columns({velocity: other}))
+        assert [(each.code, each.fatal) for each in found if "its velocity" in each.text] == [
+            ("stuck_channel", False)
+        ]
+
+
+def test_a_gap_of_the_log_turns_nothing(robot: RobotModel) -> None:
+    log = record(sway())
+    position, velocity = f"joint.{JOINT}.position", f"joint.{JOINT}.velocity"
+    still = log.with_columns({position: np.full(len(log), 0.1), velocity: 0.01 * np.sin(log.time)})
+    later = np.where(log.time > 3.0, log.time + 100.0, log.time)
+    assert not dead(MotionLog(log.name, later, still.columns), robot)
+
+
+def dead(log: MotionLog, robot: RobotModel) -> list[str]:
+    """What is said about encoders whose velocity goes on."""
+    return [finding.text for finding in check_log(robot, log) if "its velocity" in finding.text]
+
+
+def test_a_force_that_stands_still_is_told_with_its_column(robot: RobotModel) -> None:
+    log = noisy(record(sway()), 1)
+    assert not [found for found in check_channels(robot, log) if found.code == "stuck_channel"]
+    force = log.columns["wrench.left.force.x"].copy()
+    force[400:900] = force[400]
+    found = check_channels(robot, log.with_columns({"wrench.left.force.x": force}))
+    assert any("wrench.left.force.x" in finding.text for finding in found)
+
+
+def resting(start: int, seconds: float, missed: int) -> MotionLog:
+    """A simulated sway, in which nothing changes for a while; `missed`: steps that the motion goes on by meanwhile."""
+    log = record(sway())
+    rows = np.concatenate(
+        [
+            np.arange(start),
+            np.full(round(seconds / log.period), start),
+            np.arange(start + 1 + missed, len(log)),
+        ]
+    )
+    rests = np.arange(len(rows)) - start < round(seconds / log.period)
+    columns = {
+        name: np.where(rests & name.endswith(".velocity"), 0.0, values[rows])
+        for name, values in log.columns.items()
+    }
+    return MotionLog(log.name, log.period * np.arange(len(rows)), columns)
+
+
+def test_a_simulated_robot_at_rest_has_no_dead_channel(robot: RobotModel) -> None:
+    (found,) = check_channels(robot, resting(0, 2.0, 0))
+    assert (found.code, found.severity) == ("at_rest", "info")
+    assert found.text.startswith("t = 0 to 1.99 s: nothing changes")
+    log = resting(0, 2.0, 0)
+    name = "wrench.left.force.x"
+    both = log.with_columns(
+        {name: np.where(np.arange(len(log)) < 800, log.column(name)[0], log.column(name))}
+    )
+    assert [one.code for one in check_channels(robot, both)] == ["at_rest", "stuck_channel"]
+
+
+def test_a_logger_that_freezes_is_no_robot_at_rest(robot: RobotModel) -> None:
+    """Behind it all channels jump, where a motion begins slowly."""
+    codes = {one.code for one in check_channels(robot, resting(1000, 0.5, 100))}
+    assert "stuck_channel" in codes
+    assert "at_rest" not in codes
+
+
+def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
+    log = record(sway("cells", 1, duration=8.0))
+    none = {f"wrench.left.{part}": np.zeros(len(log)) for part in ("force.x", "force.y", "torque.z")}
+    cells = log.with_columns(none)
+    found = [finding for finding in check_log(robot, cells) if "wrench.left" in finding.text]
+    assert [finding.code for finding in found] == ["vertical_only"]
+    broken = cells.with_columns({"wrench.left.torque.z": log.column("wrench.left.torque.z")})
+    assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_channel"]

@@ -1,0 +1,189 @@
+"""What is said of wrenches that do not balance gravity, at each limit: a stub has the misfits and the leans."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from plantar.faults import standing
+from plantar.faults.stance import StanceSides
+from plantar.notes import Finding
+
+UP = np.tile([0.0, 0.0, 1.0], (10, 1))
+
+
+@dataclass
+class Stub:
+    """A stance of a misfit [m] and a lean [deg]; `exchanged`: the misfit with the feet's wrenches exchanged."""
+
+    misfit: float = 0.0
+    lean: float = 0.0
+    exchanged: float = np.inf
+    torques: bool = False
+    tilt: np.ndarray = field(default_factory=lambda: UP)
+    turn: float = 0.0
+    imu = SimpleNamespace(name="chest")
+
+    def sides(self) -> StanceSides:
+        arms = np.zeros((10, 2, 6, 3))
+        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit
+        lean = np.radians(self.lean)
+        push = np.tile([np.sin(lean), 0.0, np.cos(lean)], (10, 1)) if self.tilt is UP else self._turned()
+        return StanceSides(arms, self.tilt, push)
+
+    def _turned(self) -> np.ndarray:
+        c, s = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
+        return np.asarray(self.tilt @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]))
+
+    def exchanged_wrenches(self) -> Stub:
+        return Stub(self.exchanged)
+
+
+def said(
+    monkeypatch: pytest.MonkeyPatch,
+    stance: Stub,
+    left: dict[str, float] | None = None,
+    joints: dict[str, float] | None = None,
+    pair: str | None = None,
+    turned: standing._TurnedWrench | None = None,
+) -> Finding | None:
+    """The finding, where `left` and `joints` are the misfits with a component or a joint reversed."""
+    monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
+    monkeypatch.setattr(standing, "_reversed_joints", lambda *_: joints or {})
+    monkeypatch.setattr(standing, "_reversed_components", lambda *_: left or {})
+    monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: pair)
+    monkeypatch.setattr(standing, "_turned_wrench", lambda *_: turned)
+    found = list(standing.check_balance(None, None))  # type: ignore[arg-type]
+    assert len(found) <= 1
+    return found[0] if found else None
+
+
+@pytest.mark.parametrize(
+    ("lean", "code", "fatal"),
+    [(3.4, None, False), (3.6, "force_leans_little", False), (6.9, "force_leans_little", False),
+     (7.1, "force_leans", False), (29.9, "force_leans", False), (30.1, "force_leans", True)],
+)  # fmt: skip
+def test_a_force_that_leans(
+    monkeypatch: pytest.MonkeyPatch, lean: float, code: str | None, fatal: bool
+) -> None:
+    found = said(monkeypatch, Stub(lean=lean))
+    assert (found and found.code) == code
+    if found:
+        assert found.fatal == fatal
+        assert f"the ground's force leans {lean:.1f} deg from up (valid: below 3.5 deg;" in found.text
+        assert found.text.startswith("columns 'imu.chest.*'")
+
+
+@pytest.mark.parametrize(
+    ("misfit", "code", "fatal", "text"),
+    [(0.119, None, False, ""),
+     (0.121, "balance", False, "only to 12.1 cm about the URDF's centre of mass (valid: below 2 cm;"),
+     (1.49, "balance", False, "only to 149.0 cm"), (1.51, "balance", True, "only to 1.51 m about the centre of mass")],
+)  # fmt: skip
+def test_a_misfit_that_nothing_explains(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, code: str | None, fatal: bool, text: str
+) -> None:
+    found = said(monkeypatch, Stub(misfit))
+    assert (found and found.code) == code
+    assert not found or (found.fatal, text in found.text) == (fatal, True)
+
+
+def test_torques_in_millimetres_are_told_by_their_unit(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = said(monkeypatch, Stub(15.0, torques=True))
+    assert found is not None
+    assert (found.code, found.fatal) == ("torque_unit", True)
+    assert "only to 15 m about the centre of mass (valid: torques in N·m; these look like N·mm)" in found.text
+
+
+@pytest.mark.parametrize(("misfit", "left", "told"), [(0.019, 0.001, False), (0.021, 0.001, True), (0.1, 0.049, True),
+                                                      (0.1, 0.051, False)])  # fmt: skip
+def test_a_component_reversed_leaves_less_than_half(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, left: float, told: bool
+) -> None:
+    more = {"column 'b'": left + 0.09 * misfit, "column 'c'": left + 0.11 * misfit}
+    found = said(monkeypatch, Stub(misfit), {"column 'a'": left, **more})
+    assert (found is not None) == told
+    if found:
+        assert (found.code, found.fatal) == ("sign", False)
+        text = f"column 'a' or column 'b': reversed, the wrenches balance gravity to {100 * left:.1f} cm instead of"
+        assert found.text == f"{text} {100 * misfit:.1f} cm (valid: the signs of URDF and robot file)"
+
+
+@pytest.mark.parametrize(
+    ("misfit", "left", "lean", "fatal"),
+    [
+        (0.051, 0.005, 0.0, True),
+        (0.049, 0.0048, 0.0, False),
+        (0.1, 0.011, 0.0, False),
+        (0.1, 0.02, 30.1, True),
+    ],
+)
+def test_a_joint_reversed_is_certain_where_hardly_a_tenth_is_left(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, left: float, lean: float, fatal: bool
+) -> None:
+    """Of more than 5 cm, or where the force leans by more than any mount; below 5 cm joints are not asked at all."""
+    joints = {"column 'joint.a.position'": left} if misfit > 0.05 else {}
+    others = {"column 'b'": 0.9 * misfit, **({} if joints else {"x": left})}
+    found = said(monkeypatch, Stub(misfit, lean), others, joints)
+    assert found is not None
+    assert (found.code, found.fatal) == ("sign", fatal)
+
+
+@pytest.mark.parametrize(
+    ("exchanged", "best", "said_too", "told"),
+    [
+        (0.049, np.inf, False, True),
+        (0.051, np.inf, False, False),
+        (0.04, 0.031, True, True),
+        (0.04, 0.029, False, False),
+    ],
+)
+def test_feet_that_are_swapped(
+    monkeypatch: pytest.MonkeyPatch, exchanged: float, best: float, said_too: bool, told: bool
+) -> None:
+    """Exchanged they leave less than half, and hardly more than the best reversal, which is told beside."""
+    found = said(
+        monkeypatch, Stub(0.1, exchanged=exchanged), {"column 'a'": best} if np.isfinite(best) else {}
+    )
+    assert (found is not None and found.code == "swapped_feet") == told
+    if found and told:
+        assert found.fatal
+        assert ("; or column 'a' is reversed" in found.text) == said_too
+
+
+@pytest.mark.parametrize(("misfit", "told"), [(0.049, False), (0.051, True)])
+def test_joints_that_are_exchanged(monkeypatch: pytest.MonkeyPatch, misfit: float, told: bool) -> None:
+    found = said(monkeypatch, Stub(misfit), pair="'joint.a.position', 'joint.b.position'")
+    assert (found is not None) == told
+    assert not found or (found.code, found.fatal) == ("joint_names", True)
+
+
+@pytest.mark.parametrize(
+    ("left", "best", "told"),
+    [(0.034, np.inf, True), (0.036, np.inf, False), (0.02, 0.031, True), (0.02, 0.029, False)],
+)
+def test_a_sensor_that_is_turned_by_a_quarter(
+    monkeypatch: pytest.MonkeyPatch, left: float, best: float, told: bool
+) -> None:
+    """It leaves a third, and clearly less than any reversal."""
+    turned = standing._TurnedWrench(left, -90, "columns 'wrench.left.*'")
+    found = said(monkeypatch, Stub(0.1), {"column 'a'": best} if np.isfinite(best) else {}, turned=turned)
+    assert (found is not None and found.code == "wrench_turned") == told
+    if found and told:
+        text = "columns 'wrench.left.*': turned by -90 deg about the sensors' z axes, the wrenches balance gravity to"
+        assert found.text.startswith(f"{text} {100 * left:.1f} cm instead of 10.0 cm")
+        assert not found.fatal
+
+
+@pytest.mark.parametrize(("turn", "told"), [(9.7, False), (10.4, True), (-10.4, True)])
+def test_an_imu_that_tilts_another_way(monkeypatch: pytest.MonkeyPatch, turn: float, told: bool) -> None:
+    angle = np.linspace(0.0, 2 * np.pi, 10, endpoint=False)
+    tilt = np.column_stack([0.05 * np.cos(angle), 0.05 * np.sin(angle), np.full(10, np.sqrt(1 - 0.05**2))])
+    found = said(monkeypatch, Stub(tilt=tilt, turn=turn))
+    assert (found is not None) == told
+    if found:
+        assert found.code == "imu_turned"
+        assert f"turned by {turn:.0f} deg about the vertical (valid: within 10 deg;" in found.text

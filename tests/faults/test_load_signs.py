@@ -1,0 +1,71 @@
+"""Feet that are pulled down: reversed signs are told from sensors zeroed under load, whichever sign is tried."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import WEIGHT
+from biped_robot import make_robot
+from plantar.faults.load_signs import check_load_signs
+from plantar.robot.model import RobotModel
+
+TIME = np.arange(0.0, 20.0, 0.01)
+LEFT = WEIGHT * (0.7 + 0.25 * np.sin(TIME))  # most of the weight on the left foot
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> RobotModel:
+    return make_robot(tmp_path)
+
+
+def signed(robot: RobotModel, sign: float) -> RobotModel:
+    feet = {name: replace(foot, wrench=replace(foot.wrench, sign=sign)) for name, foot in robot.feet.items()}
+    return replace(robot, feet=feet)
+
+
+def test_loads_that_push_up_are_right(robot: RobotModel) -> None:
+    assert not list(check_load_signs(robot, {"left": LEFT, "right": WEIGHT - LEFT}))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_reversed_sensor_gets_the_other_sign(robot: RobotModel, sign: int) -> None:
+    (found,) = check_load_signs(signed(robot, sign), {"left": -LEFT, "right": WEIGHT - LEFT})
+    assert found.code == "sign"
+    assert f"'sign: {-sign}' in feet.left.wrench" in found.text
+
+
+def test_both_reversed_get_the_other_sign(robot: RobotModel) -> None:
+    found = list(check_load_signs(robot, {"left": -LEFT, "right": LEFT - WEIGHT}))
+    assert "sign" in {one.code for one in found}
+    assert "zeroed_under_load" not in {one.code for one in found}
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_no_sign_is_advised_where_sensors_were_zeroed_under_load(robot: RobotModel, sign: int) -> None:
+    """Zeroed while both feet carried half, then most of the weight on one: one foot reads negative with either sign."""
+    loads = {"left": sign * (LEFT - WEIGHT / 2), "right": sign * (WEIGHT / 2 - LEFT)}
+    (found,) = check_load_signs(signed(robot, sign), {name: 1.5 * load for name, load in loads.items()})
+    assert found.code == "zeroed_under_load"
+    assert found.fatal
+    assert "contact: always" in found.text
+    assert "set 'sign" not in found.text
+
+
+@pytest.mark.parametrize("right", [0.7, 1.0])
+def test_a_foot_in_the_air_that_pulls_has_a_zero_and_no_reversed_sign(
+    robot: RobotModel, right: float
+) -> None:
+    """A third of the weight downward: a reversed sign where the other foot carries two thirds, else a zero."""
+    left = np.full_like(TIME, -0.3 * WEIGHT)
+    (found,) = check_load_signs(robot, {"left": left, "right": np.full_like(TIME, right * WEIGHT)})
+    assert found.code == ("zeroed_under_load" if right == 1.0 else "sign")
+    assert ("its zero is off" in found.text) == (right == 1.0)
+
+
+def test_feet_that_stand_throughout_are_not_asked(robot: RobotModel) -> None:
+    feet = {name: replace(foot, contact="always") for name, foot in robot.feet.items()}
+    assert not list(check_load_signs(replace(robot, feet=feet), {"left": -LEFT, "right": LEFT - WEIGHT}))

@@ -1,0 +1,45 @@
+"""The balance of a standing robot, by hand: moments about the centre of mass over the load."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from plantar.faults.stance import Stance, stance_of, usual
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+
+@pytest.fixture(scope="module")
+def stance(robot: RobotModel) -> Stance:
+    found = stance_of(robot, record(sway(duration=12.0)))
+    assert found is not None
+    return found
+
+
+def test_a_torque_adds_its_moment_arm(stance: Stance) -> None:
+    """20 N.m at one foot, over the whole load, is so many metres, in the sole's own direction."""
+    before = stance.sides()
+    load = usual(sum(wrench[:, :3] for wrench in stance.wrenches))
+    pushed = [wrench.copy() for wrench in stance.wrenches]
+    pushed[0][:, 3] += 20.0
+    after = Stance(stance.robot, stance.imu, stance.orientation, stance.positions, pushed).sides()
+    moved = after.moment_arms.sum(axis=(1, 2)) - before.moment_arms.sum(axis=(1, 2))
+    assert usual(moved) == pytest.approx(20.0 / load, rel=0.05)
+
+
+def test_changes_undo_themselves(stance: Stance) -> None:
+    as_read = stance.sides().moment_arms
+    for again in (
+        stance.exchanged_wrenches().exchanged_wrenches(),
+        stance.exchanged_joints(1, 2).exchanged_joints(1, 2),
+        stance.reversed_joint(3).reversed_joint(3),
+    ):
+        assert np.array_equal(again.sides().moment_arms, as_read)
+
+
+def test_a_log_in_the_air_has_no_stance(robot: RobotModel) -> None:
+    log = record(sway(duration=12.0))
+    light = {name: 0 * log.column(name) for name in log.columns if name.startswith("wrench.")}
+    assert stance_of(robot, MotionLog(log.name, log.time, {**log.columns, **light})) is None

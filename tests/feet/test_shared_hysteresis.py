@@ -1,0 +1,217 @@
+"""A memory that other axes of a robot show is taken where one axis shows it less clearly, and nowhere else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bush_data_sets import Rubber
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.stances import Stances
+from plantar.conventions import Axis
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.hidden_memory import TOO_SMALL
+from plantar.feet.foot_fit import FittedFoot
+from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.settings import FeetSettings
+from plantar.feet.shared_hysteresis import with_shared_hysteresis
+from plantar.models import BoucWen, BushModel, Hardening, KelvinVoigt
+
+RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+STEPPING = Stances(np.arange(4000) // 1000, np.ones(4000))
+NEARER = "elastoplastic predicts held-out motion better"
+
+
+@pytest.fixture(scope="module")
+def recordings() -> list[Recording]:
+    angle = swayed(4000, seed=1)
+    return [made_recording("sway", angle, RUBBER.torque(angle, np.gradient(angle, PERIOD)))]
+
+
+@pytest.fixture(scope="module")
+def clear(recordings: list[Recording]) -> AxisFit:
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings())
+    assert fit is not None
+    assert fit.model.name == "elastoplastic"
+    return fit
+
+
+@pytest.fixture(scope="module")
+def spring(recordings: list[Recording], clear: AxisFit) -> AxisFit:
+    """As of short stances: the memory is nearer, and gains too little."""
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(), KelvinVoigt())
+    assert fit is not None
+    assert clear.choice is not None
+    return replace(fit, choice=replace(clear.choice, caution=NEARER))
+
+
+def foot(fit: AxisFit, recordings: list[Recording], *, steps: bool = False) -> FittedFoot:
+    if steps:
+        recordings = [replace(recording, stances={FOOT: STEPPING}) for recording in recordings]
+    ready: Any = SimpleNamespace(fitted=recordings, settings=FeetSettings())
+    return FittedFoot(FOOT, None, {"pitch": fit}, {}, ready, ready, ())  # type: ignore[arg-type]
+
+
+def test_a_memory_that_another_axis_shows_is_taken(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit
+) -> None:
+    feet = {"one": foot(spring, recordings), "other": foot(clear, recordings)}
+    found = with_shared_hysteresis(feet)["one"].fits["pitch"]
+    assert found.model.name == "elastoplastic"
+    assert found.values[0] == pytest.approx(RUBBER.stiffness, rel=0.02)
+    assert spring.values[0] > 1.1 * RUBBER.stiffness
+    assert found.choice is not None
+    assert found.choice.caution is None
+    assert [score.model.name for score in found.choice.ranking if score.chosen] == ["elastoplastic"]
+    assert "other axes" in found.reason
+
+
+def changed(fit: AxisFit, **scores: object) -> AxisFit:
+    """With no caution, and something else said of each model but spring and damper."""
+    assert fit.choice is not None
+    ranking = tuple(
+        replace(
+            score,
+            chosen=score.model.name == "kelvin_voigt",
+            **({} if score.model.name == "kelvin_voigt" else scores),
+        )
+        for score in fit.choice.ranking
+    )
+    return replace(fit, choice=replace(fit.choice, caution=None, ranking=ranking))
+
+
+def of(one: AxisFit, other: AxisFit, recordings: list[Recording], *, steps: bool = False) -> AxisFit:
+    feet = {"one": foot(one, recordings, steps=steps), "other": foot(other, recordings)}
+    return with_shared_hysteresis(feet)["one"].fits["pitch"]
+
+
+def test_no_memory_is_made_up(recordings: list[Recording], clear: AxisFit, spring: AxisFit) -> None:
+    worse = changed(spring, held_out_rms=9e9, refused=None)
+    for one, other in ((spring, spring), (worse, clear)):
+        assert of(one, other, recordings) is one
+
+
+def test_of_a_foot_that_steps_a_memory_is_taken_as_soon_as_it_predicts_better(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("plantar.feet.shared_hysteresis.fit_axis", lambda *_: clear)
+    better = changed(spring, refused=None)
+    assert of(better, clear, recordings).model.name == "kelvin_voigt"
+    assert of(better, clear, recordings, steps=True).model.name == "elastoplastic"
+    assert of(better, spring, recordings, steps=True) is better
+
+
+@pytest.mark.parametrize(("share", "taken"), [(0.2, True), (0.3, False)])
+def test_a_memory_beside_a_spring_that_is_not_known_is_not_taken(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, share: float, taken: bool
+) -> None:
+    """One in which a spring is known to half of it at best: 1.96 deviations of 0.26."""
+    covariance = clear.covariance.copy()
+    covariance[0, 0] = (share * clear.values[0]) ** 2
+    found = of(spring, replace(clear, covariance=covariance), recordings)
+    assert (found.model.name == "elastoplastic") is taken
+
+
+@pytest.mark.parametrize(
+    ("scores", "steps"),
+    [
+        ({"refused": "is hardly reached"}, False),
+        ({"refused": None}, False),  # it was told from zero and predicts better, too little to be chosen
+        ({"refused": "is hardly reached"}, True),
+        ({"held_out_rms": 9e9, "refused": None}, True),
+    ],
+)
+def test_a_memory_that_is_neither_shown_nor_excluded_makes_a_caution(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, scores: dict[str, object], steps: bool
+) -> None:
+    unsure = changed(spring, **scores)
+    found = of(unsure, clear, recordings, steps=steps)
+    assert found.model.name == "kelvin_voigt"
+    assert found.choice is not None
+    assert "neither show nor exclude" in (found.choice.caution or "")
+    alone = of(unsure, unsure, recordings, steps=steps)
+    assert alone is unsure
+
+
+def test_motions_too_small_to_make_the_others_slip_exclude_nothing(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit
+) -> None:
+    """A memory that predicts no better excludes one, unless the axis bends by less than others need to slip."""
+    assert clear.choice is not None
+    slips = float(clear.choice.fit.shape[0])
+    assert slips == pytest.approx(RUBBER.slip_angle, rel=0.1)
+    excluded = changed(spring, held_out_rms=9e9, refused=None)
+    assert excluded.choice is not None
+    assert of(excluded, clear, recordings) is excluded
+    small = replace(excluded, choice=replace(excluded.choice, reach=slips))
+    found = of(small, clear, recordings)
+    assert found.choice is not None
+    assert found.choice.caution is not None
+    assert "neither show nor exclude" in found.choice.caution
+    assert of(small, spring, recordings) is small  # nobody shows one
+    doubted = replace(spring, choice=replace(spring.choice, reach=slips)) if spring.choice else spring
+    assert of(doubted, clear, recordings).model.name == "kelvin_voigt"  # nor is one taken from there
+    harder = of(replace(small, model=Hardening()), clear, recordings)  # nor does it of a spring that hardens
+    assert harder.choice is not None
+    assert harder.choice.caution is not None
+
+
+def test_a_spring_that_hardens_elsewhere_is_no_memory(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit
+) -> None:
+    hardens = replace(clear, model=Hardening())
+    unsure = changed(spring, refused="is hardly reached")
+    assert of(unsure, hardens, recordings) is unsure
+
+
+@pytest.mark.parametrize(
+    ("axis", "elsewhere", "caution", "model", "dropped"),
+    [
+        ("roll", 0.0151, None, KelvinVoigt(), True),
+        ("roll", 0.0151, "drift", KelvinVoigt(), False),  # there it is open as well
+        (
+            "roll",
+            0.0074,
+            None,
+            KelvinVoigt(),
+            False,
+        ),  # half of the small motions' limit: roll's border is half as far
+        ("roll", 0.0151, None, BoucWen(), False),
+        (
+            "pitch",
+            0.0151,
+            None,
+            KelvinVoigt(),
+            False,
+        ),  # at pitch's border roll would have to bend twice as far
+        ("pitch", 0.0301, None, KelvinVoigt(), True),
+    ],
+)
+def test_where_the_other_axis_bends_the_rubber_and_shows_no_memory_small_motions_hide_none(
+    spring: AxisFit, axis: Axis, elsewhere: float, caution: str | None, model: BushModel, dropped: bool
+) -> None:
+    assert spring.choice is not None
+    small = replace(
+        spring, axis=axis, choice=replace(spring.choice, reach=0.012, caution=TOO_SMALL.format(0.012))
+    )
+    other: Axis = "pitch" if axis == "roll" else "roll"
+    wide = replace(
+        spring,
+        axis=other,
+        model=model,
+        shape=np.ones(len(model.shape_terms)),
+        values=np.ones(len(model.terms)),
+        choice=replace(spring.choice, reach=elsewhere, caution=caution),
+    )
+    corners = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
+    robot = SimpleNamespace(feet={FOOT: SimpleNamespace(sole=SimpleNamespace(polygon=corners))})
+    ready: Any = SimpleNamespace(fitted=[], settings=FeetSettings(), robot=robot)
+    one = FittedFoot(FOOT, None, {axis: small, other: wide}, {}, ready, ready, ())  # type: ignore[arg-type]
+    found = with_shared_hysteresis({"one": one})["one"].fits[axis]
+    assert found.choice is not None
+    assert (found.choice.caution is None) == dropped
