@@ -290,7 +290,7 @@ def test_the_command_prints_its_scores(
 ) -> None:
     result.save(tmp_path / "feet")
     robot, file = hrp2.write(tmp_path), tmp_path / "short.parquet"
-    save_log(first(log, 2.0), file, hrp2.robot())
+    save_log(first(log, 2.1), file, hrp2.robot())
     arguments = ("compare", tmp_path / "feet" / "result.json", robot, file, "--out", tmp_path / "out")
     assert run(*arguments) == 0
     assert "exported contact" in capsys.readouterr().out
