@@ -8,7 +8,7 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
-from plantar.feet.assess.late_recordings import late_recordings
+from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.odd_recordings import odd_recordings, odd_walks
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
@@ -68,7 +68,10 @@ def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
             found.parameters.extend(unseen_rows(fitted.foot, axis, fitted.ready.fitted))
-    return replace(found, notes=(*found.notes, *internal_errors(fitted.foot, fitted.given_up)))
+    # A clock that is late is late about both axes, also about the one whose damping hardly shows it.
+    late = [note for note in found.notes if note.code == RECORDING_LATE]
+    notes = (*found.notes, *internal_errors(fitted.foot, fitted.given_up))
+    return replace(found, parameters=doubted(found.parameters, late), notes=notes)
 
 
 def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart) -> FootFit:

@@ -11,13 +11,16 @@ from biped import record, sway
 from bush_data_sets import Rubber
 from feet_trials import LINEAR, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.feet.assess.late_recordings import CODE, late_recordings
+from plantar.feet import foot_assessment
+from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
 COUNT = 6000
@@ -99,9 +102,24 @@ def late_by(log: MotionLog, delay: float) -> MotionLog:
 def test_no_number_of_the_late_axis_is_usable(robot: RobotModel) -> None:
     logs = [noisy(record(sway(f"sway_{seed}", seed=seed)), seed) for seed in range(3)]
     good = identify_feet(robot, logs, settings=LINEAR)
-    assert CODE not in {note.code for note in good.notes}
+    assert RECORDING_LATE not in {note.code for note in good.notes}
     logs[1] = late_by(logs[1], 0.04)
     result = identify_feet(robot, logs, settings=LINEAR)
-    assert {note.text.split(":")[0] for note in result.notes if note.code == CODE} == {"sway_1"}
+    assert {note.text.split(":")[0] for note in result.notes if note.code == RECORDING_LATE} == {"sway_1"}
     usable = {row.foot for row in result.parameters if row.axis != "z" and row.verdict == "usable"}
     assert usable == {"right"}
+
+
+def test_a_recording_that_is_late_about_one_axis_is_trusted_about_neither(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Roll's damping may hardly show a clock that pitch's shows."""
+
+    def late_in_pitch(wide: AxisFit, *_: object) -> list[Note]:
+        told = wide.foot == "left" and wide.axis == "pitch"
+        return [Note(RECORDING_LATE, "warning", "sway_1: late")] if told else []
+
+    monkeypatch.setattr(foot_assessment, "late_recordings", late_in_pitch)
+    logs = [noisy(record(sway(f"sway_{seed}", seed=seed)), seed) for seed in range(2)]
+    rows = [row for row in identify_feet(robot, logs, settings=LINEAR).parameters if row.axis != "z"]
+    assert {(row.foot, row.verdict) for row in rows} == {("left", "weak"), ("right", "usable")}

@@ -20,7 +20,7 @@ from plantar.feet.regression.regression_data import beside
 from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
 
-CODE = "recording_late"
+RECORDING_LATE = "recording_late"
 SURE = 5.0  # deviations by which a recording's damping must differ, as delays of logs that show them
 RATE = 1  # the place of the rate, and of damping, in spring and damper
 
@@ -50,7 +50,7 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
         f"recordings', as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} against "
         "the IMU than theirs. Record it again with clocks and filters as in the others, or leave it out"
     )
-    return [Note(CODE, "warning", text)]
+    return [Note(RECORDING_LATE, "warning", text)]
 
 
 def _spring_and_damper(block: Block) -> Block:
