@@ -60,7 +60,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/data_faults.py", "a filter leaves no stiffness",
-        'note.code not in OF_MOMENTS or row.name != "stiffness"', "True", ("feet/assess/test_data_faults.py",),
+        'note.code not in moments or row.name != "stiffness"', "True", ("feet/assess/test_data_faults.py",),
     ),
     Mutant(
         "feet/interval_width/systematic.py", "a delay in doubt counts by its slope alone",

@@ -79,6 +79,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
     blocks = tangent_blocks(thin.fitted, fit, drift=not shared)
+    steps = blocks[0].stances is not None
     causes = systematic_causes(fit, blocks, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += robot_causes(fit, blocks, thin.fitted, ready.robot.uncertainty.wrench_gain, between, shared)
     causes += slip_angle_causes(fit, thin.fitted, shared)
@@ -117,12 +118,15 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *(note for note in ready.notes if note.code in (*OF_MOMENTS, ATTITUDE_SCALE)),
     ]
     # Behind the others: a mass, a gain or a delay that is wrong looks like one. Steps hardly tell how far a bush is.
-    far = far_arms([fit]) if fitted.place.measured and blocks[0].stances is None else []
+    far = far_arms([fit]) if fitted.place.measured and not steps else []
     # What is left of a foot on its edge is flat, and no number is doubted; what most of it could tell comes first.
     first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *(faults or far)]
     return FootFit(
         fits=[*found.fits, wide],
-        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), [*faults, *far]), first)],
+        parameters=[
+            *found.parameters,
+            *mend_first(doubted(advised(rows, limits), [*faults, *far], steps=steps), first),
+        ],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},

@@ -14,9 +14,10 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.notes import Note
-from plantar.results.feet import FeetResult
+from plantar.results.feet import FeetResult, Parameter
 from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
+from plantar.sensors.bandwidth import FILTERED
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +106,13 @@ def test_a_bush_too_far_from_its_place_takes_usable_away_where_the_place_is_know
     assert any(row.verdict == "usable" for row in healthy.parameters if row.axis != "z")
     assert any(row.verdict == "usable" for row in numbers) == guessed
     assert any("50 mm off" in row.reason for row in numbers) != guessed
+
+
+def test_a_slow_filter_spoils_the_stiffness_of_a_foot_that_steps() -> None:
+    """On the twin's walks, wrenches behind 5 Hz made the stiffness 6 % too small within an interval of 5 %."""
+    row = Parameter("left", "roll", "stiffness", "N.m/rad", 300.0, 8.0, (284.0, 316.0), 1.0, "usable", "")
+    behind = Note(FILTERED, "warning", "as behind a low-pass of 6 Hz")
+    assert [each.verdict for each in doubted([row], [behind])] == ["usable"]
+    assert [each.verdict for each in doubted([row], [behind], steps=True)] == ["weak"]
+    other = next(iter(OF_MOMENTS - {FILTERED}))
+    assert [each.verdict for each in doubted([row], [Note(other, "warning", "")], steps=True)] == ["usable"]

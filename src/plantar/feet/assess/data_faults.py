@@ -53,12 +53,16 @@ def first_sentence(note: Note) -> str:
     return note.text.partition(". ")[0]
 
 
-def doubted(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
+def doubted(rows: Sequence[Parameter], faults: Sequence[Note], *, steps: bool = False) -> list[Parameter]:
     """The rows, no longer usable where the data have a fault: a sensor behind a slow filter, or late by nobody knows
-    how much, leaves the stiffness to its interval."""
+    how much, leaves the stiffness to its interval.
+
+    Of a foot that `steps` a slow filter spoils the stiffness too: it smears landings over the stance.
+    """
+    moments = OF_MOMENTS - {FILTERED} if steps else OF_MOMENTS
     found = []
     for row in rows:
-        own = [note for note in faults if note.code not in OF_MOMENTS or row.name != "stiffness"]
+        own = [note for note in faults if note.code not in moments or row.name != "stiffness"]
         if own and row.verdict == "usable":
             reason = f"a fault of the data: {first_sentence(own[0])}"
             found.append(replace(row, verdict="weak", reason=reason, advice=ADVICE))
