@@ -23,18 +23,16 @@ from plantar.notes import Note
 from plantar.results.walk_rows import WalkStiffness
 
 CODE = "recording_odd"
-SURE = 5.0  # deviations by which a recording must differ, those by which the others differ among one another included
+SURE = 5.0  # deviations from the others' mean; their own scatter is part of a deviation
 MUCH = 0.05  # of the stiffness; rubber that is warmer or stood under load before makes 1 to 3 %
-
-
 # Of the stiffness: a recording that makes less moves by a tenth of what the largest does, and all else that is wrong
 # is divided by that.
 TELLS = 0.01
 
 
 class Odd(NamedTuple):
-    """The recording at `place`, whose stiffness is by a `share` (deviation `std`) beside that of the others, which
-    differ among one another by the share `apart`."""
+    """The recording at `place`: its stiffness less the others' mean, as a `share` of it, with deviation `std`; `apart`:
+    the share by which the others scatter."""
 
     place: int
     share: float
@@ -111,11 +109,11 @@ def _beside_others(shares: Array, covariance: Array, place: int) -> Odd:
     """One recording beside the mean of the others, weighted by how well each is known and by how far they differ."""
     others = [each for each in range(len(shares)) if each != place]
     apart = _apart(shares[others], covariance[np.ix_(others, others)])
-    # A step from the first to the second of two values, each with its own deviation beside the common first recording.
+    # Of this recording less each other one: both ends of a difference may be off by `apart` as well.
     spread = covariance + apart**2 * np.eye(len(shares))
     step = np.eye(len(shares)) - np.eye(len(shares))[place]
-    among = step[others] @ spread @ step[others].T
-    weight = np.linalg.solve(among, np.ones(len(others)))
+    differences = step[others] @ spread @ step[others].T
+    weight = np.linalg.solve(differences, np.ones(len(others)))
     variance = 1.0 / float(weight.sum())
     share = float(variance * weight @ (shares[place] - shares[others]))
     return Odd(place, share, float(np.sqrt(variance)), apart)
