@@ -25,8 +25,8 @@ void FootTracker::follow_elements(const Middle& row, double time, double dt) noe
     if (begun_elements_ && (row.stands || row.lands)) {
       if (rolled_) element.hold(angles[a]), opened_[a] = element.gap();
       if (turned(rates_before_[a], rates[a]))
-        element.load(turning_angle(angles_before_[a], rates_before_[a], rates[a], dt));
-      element.load(angles[a]);
+        element.follow(turning_angle(angles_before_[a], rates_before_[a], rates[a], dt));
+      element.follow(angles[a]);
       if (row.lands) opened_[a] = element.gap();
       const bool wide = opened_[a] > LEAN / slip_angle_[a];
       if (wide && opened_[a] - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
