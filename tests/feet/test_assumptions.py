@@ -114,7 +114,7 @@ def test_what_it_does_is_half_the_interval_that_it_alone_would_make(found: FeetR
 
 def test_sensors_that_are_better_known_leave_less(found: FeetResult, usual: RobotModel) -> None:
     gain = [each for each in found.assumptions if each.name == "wrench_gain"]
-    assert [each.what for each in gain] == list(FEET)
+    assert [each.what for each in gain] == [f"{foot}, beside the weight" for foot in FEET]
     assert gain[0].stiffness_percent is not None
     assert gain[0].stiffness_percent >= 100 * NORMAL95 * usual.uncertainty.wrench_gain
     assert gain[1].stiffness_percent is None, "said once"

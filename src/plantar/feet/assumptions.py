@@ -54,7 +54,7 @@ def assumptions(ready: PreparedLogs, feet: Sequence[FootFit], apart: Apart) -> t
     )
     found: dict[str, list[Found]] = {
         "wrench_gain": [
-            Found(foot, gain.share, float(np.hypot(gain.std, gain.other)))
+            Found(f"{foot}, beside the weight", gain.share, float(np.hypot(gain.std, gain.other)))
             for foot, gain in ready.gain_errors.items()
         ],
         "wrench_delay": _delays(ready) if ready.sensor_delay.measured else [],
