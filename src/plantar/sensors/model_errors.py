@@ -1,5 +1,4 @@
-"""What a robot file that is a little wrong does to the predicted wrench: its inertias and its IMU's mount drawn about
-their own."""
+"""What a URDF that is a little wrong does to the predicted wrench: inertial parameters drawn about its own."""
 
 from __future__ import annotations
 
@@ -9,42 +8,11 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.dynamics import Equation
-from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, turned_motions
 from plantar.robot.model import RobotModel
 
-DRAWS = 48  # a spread is then known to a tenth of itself
-DELAY_DRAWS = 16  # that take part in delays: these are filtered in every band
+# A spread is then known to a tenth of itself. Sixteen made a delay's a quarter too small, of one robot in all its logs.
+DRAWS = 48
 SEED = 0  # the same draws for every recording: the robot is the same
-TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
-
-
-def drawn_wrench_errors(
-    robot: RobotModel, equation: Equation, signals: InertialSignals, kept: slice, parameters: Array
-) -> Array:
-    """By how much the predicted wrench may be off at random, (draws, n, 6): see `drawn_parameter_errors`, and an IMU
-    that is turned in its mount by `uncertainty.imu_mount` [rad] about each axis.
-
-    parameters (10 n_links,): what predicts the wrench along the samples `kept` of `signals`.
-    """
-    motion, mount = inertial_motion(robot, equation, signals, kept), robot.uncertainty.imu_mount
-    errors = np.asarray(equation.base_wrenches(motion, drawn_parameter_errors(robot)[:DELAY_DRAWS]))
-    if mount == 0:
-        return errors
-    turns = mount * np.random.default_rng(SEED + 1).standard_normal((DELAY_DRAWS, 3))
-    turned = np.tensordot(turns, by_imu_turn(robot, equation, signals, kept, parameters), 1)
-    return errors + turned if len(errors) else turned
-
-
-def by_imu_turn(
-    robot: RobotModel, equation: Equation, signals: InertialSignals, kept: slice, parameters: Array
-) -> Array:
-    """How the wrench that `parameters` predict changes with the angle [rad] by which the IMU is turned about each of
-    its axes, (3, n, 6)."""
-    turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
-    motions = turned_motions(robot, equation, signals, kept, turns)
-    wrenches = np.array([equation.base_wrenches(motion, parameters[None])[0] for motion in motions])
-    return np.asarray((wrenches[:3] - wrenches[3:]) / (2 * TURN))
 
 
 def drawn_parameter_errors(robot: RobotModel) -> Array:

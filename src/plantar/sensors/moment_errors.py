@@ -11,10 +11,11 @@ import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
 from plantar.dynamics import Contact, Equation, equation_of
-from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
+from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.model_errors import by_imu_turn, drawn_parameter_errors
+from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
@@ -32,6 +33,7 @@ TOGETHER = 8  # signals that are filtered at once
 ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
 ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
+TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 
 @dataclass(frozen=True)
@@ -70,8 +72,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         robot, equation, residual.signals, residual.kept, encoders_late=residual.encoders_late
     )
     readings, zeros, measured, by_torques = _reading_columns(robot, equation, residual, motion.positions)
-    by_gyroscope = _by_gyroscope(robot, equation, residual)
-    by_mount = by_imu_turn(robot, equation, residual.signals, residual.kept, residual.parameters)
+    by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, by_torques, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
@@ -228,14 +229,21 @@ def _directions(foot: Foot) -> Array:
     return np.asarray(turn.T[[1, 0]])
 
 
-def _by_gyroscope(robot: RobotModel, equation: Equation, residual: NewtonEulerResidual) -> Array:
-    """How the prediction changes with the moment at which the gyroscope is read, (n, 6)."""
-    signals, step = residual.signals, residual.signals.period
-    motions = [
-        inertial_motion(robot, equation, signals, residual.kept, gyroscope_late=by) for by in (step, -step)
-    ]
-    late, early = (equation.base_wrenches(motion, residual.parameters[None])[0] for motion in motions)
-    return np.asarray((late - early) / (2 * step))
+def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResidual) -> tuple[Array, Array]:
+    """How the prediction changes with the moment at which the gyroscope is read, (n, 6), and with the angle [rad] by
+    which the IMU is turned about each of its axes, (3, n, 6).
+    """
+    signals, kept, step = residual.signals, residual.kept, residual.signals.period
+
+    def slope(late: Motion, early: Motion, apart: float) -> Array:
+        ends = [equation.base_wrenches(motion, residual.parameters[None])[0] for motion in (late, early)]
+        return np.asarray((ends[0] - ends[1]) / apart)
+
+    late, early = (inertial_motion(robot, equation, signals, kept, gyroscope_late=by) for by in (step, -step))
+    turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
+    turned = turned_motions(robot, equation, signals, kept, turns)
+    by_mount = [slope(*ends, 2 * TURN) for ends in zip(turned[:3], turned[3:], strict=True)]
+    return slope(late, early, 2 * step), np.array(by_mount)
 
 
 def _below_to_above(period: float) -> float:

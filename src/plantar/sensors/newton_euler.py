@@ -18,7 +18,7 @@ from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.below_sensor import below_sensors
 from plantar.sensors.load_errors import FootLoads
-from plantar.sensors.model_errors import drawn_wrench_errors
+from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.sensors.newton_sides import NewtonSides, carried, moving
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
@@ -160,25 +160,27 @@ def _along(
 
     by_encoders = (missing_late(log.period) - missing_late(-log.period)) / (2 * log.period)
     predicted, transfers = sides_of(motion)
+    # A copy holds no differences yet: of long logs, and of all together, these are large.
+    signals = replace(signals)
     predicted, by_encoders = moving([predicted, by_encoders], period)
     sides = NewtonSides(loads, transfers, predicted, by_encoders, period)
     found = sides.closed(robot.uncertainty, log.name, round(SHORTEST / period))
     if found is None or not closes(found.pair):
         return None
     calm = found.calm
+    pair = replace(
+        found.pair,
+        model_errors=equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot)),
+    )
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
-    rows = slice(kept.start + start * stride, kept.start + stop * stride, stride)
-    errors = drawn_wrench_errors(robot, equation, signals, rows, parameters)
-    pair = replace(found.pair, model_errors=errors)
     return NewtonEulerResidual(
         pair,
         found.measured,
         found.rates,
         by_encoders[calm],
         loads.readings[calm],
-        # A copy holds no differences yet: of long logs, and of all together, these are large.
-        replace(signals),
-        rows,
+        signals,
+        slice(kept.start + start * stride, kept.start + stop * stride, stride),
         parameters,
         loads.changes[calm],
         not below.parameters.any() and not below.zeros.any(),
