@@ -30,6 +30,7 @@ from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.far_arms import far_arms
+from plantar.feet.place.misread_joints import misread_joint_notes
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.notes import Note
@@ -102,6 +103,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *play_notes(thin.fitted, fit, blocks, shared),
         *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, wide, blocks, shared),
+        *misread_joint_notes(ready.robot, ready.fitted, wide, blocks),
         *late_recordings(wide, blocks, shared),
         *odd_recordings(wide, blocks, shared),
         *odd_walks(wide, walks),

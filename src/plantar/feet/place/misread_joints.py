@@ -1,0 +1,121 @@
+"""Joints between IMU and foot that are not read as the robot file says: a few per cent too much, or late by themselves.
+
+While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
+too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
+the torque tells the two apart. Where a foot stands it is the other way round: such a joint hardly moves the numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from plantar.contact.deflection import foot_motion, path_to
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
+from plantar.estimation import Block, fit_blocks
+from plantar.feet.interval_width.cause import SINGULAR
+from plantar.feet.recording import Recording, within_stances
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import all_beside, recordings_of
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import differentiate
+from plantar.signals.orientation import attitude
+
+MISREAD = "joint_misread"
+SURE = 5.0  # deviations of what is misread
+BETTER = 1.5  # times less is left of the squares than by the bush alone
+WORTH = 0.01  # of stiffness or damping, by which another one follows: less matters to nobody
+ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
+# What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
+GAIN, LATE = 0.2, 0.03  # share; s
+
+
+class Misread(NamedTuple):
+    """A joint, its `kind` of misreading, by how much it turns more [share] or is read later [s], the squares that are
+    then left, and whether another stiffness or damping follows, outside of its interval."""
+
+    joint: str
+    kind: str
+    size: float
+    squares: float
+    matters: bool
+
+    def __str__(self) -> str:
+        if self.kind == "late":
+            return f"'{self.joint}' {1e3 * abs(self.size):.2g} ms {'late' if self.size > 0 else 'early'}"
+        return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
+
+
+def misread_joint_notes(
+    robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block]
+) -> list[Note]:
+    """A warning where the torque of a foot that steps goes far better with a joint that is read otherwise, and that
+    moves stiffness or damping out of the interval of `wide`.
+
+    tangents: the recordings' `tangent_blocks`.
+    """
+    if tangents[0].stances is None:
+        return []
+    alone = fit_blocks(tangents)
+    found = sorted(_misread(robot, recordings, wide, tangents, alone.values), key=lambda one: one.squares)
+    if not found or not found[0].matters or alone.squares < BETTER * found[0].squares:
+        return []
+    alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
+    text = (
+        f"{wide.foot} {wide.axis}: the torque follows the angle far better with a joint that was read otherwise: "
+        f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders whose angles are the links', all "
+        "read at one moment)"
+    )
+    return [Note(MISREAD, "warning", text)]
+
+
+def _misread(
+    robot: RobotModel,
+    recordings: Sequence[Recording],
+    wide: AxisFit,
+    tangents: Sequence[Block],
+    usual: Array,
+) -> Iterator[Misread]:
+    """Each joint that is surely misread, one at a time; usual: (k,), the values with all as they are read."""
+    chosen = recordings_of(tangents, recordings)
+    columns = [_columns(robot, one, wide) for one in chosen]
+    for joint, kind in columns[0]:
+        wider = all_beside(tangents, [own[joint, kind][:, None] for own in columns])
+        fit = fit_blocks(wider)
+        size, std = float(fit.values[-1]), float(fit.std[-1])
+        most = GAIN if kind == "gain" else LATE
+        if SURE * std < abs(size) < most and fit.condition_number < SINGULAR:
+            inside = np.maximum(NORMAL95 * wide.std[:2], WORTH * np.abs(usual[:2]))
+            moved = np.abs(fit.values[:2] - usual[:2]) > inside
+            yield Misread(joint, kind, size, fit.squares, bool(moved.any()))
+
+
+def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
+    """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
+    each second by which it is read later."""
+    foot, log, rows = fit.foot, recording.log, recording.rows(fit.foot)
+    key = (MISREAD, foot)  # both axes ask
+    if key not in recording.kept:
+        positions, (orientation, _) = log.positions(robot), attitude(log, robot.required_imu, [])
+        path, found = path_to(robot, foot)[0], dict[str, tuple[Array, Array]]()
+        for joint in path.joints:
+            turns, still = np.zeros_like(positions[rows]), np.zeros((int(rows.sum()), 3))
+            turns[:, joint] = 1.0
+            share = foot_motion(path, positions[rows], turns, orientation[rows], still)
+            angle = within_stances(
+                positions[:, [joint]], recording.period, recording.cutoff, recording.stances[foot]
+            )
+            found[robot.joint_names[joint]] = (share.encoder_rate, angle[:, 0])
+        recording.kept[key] = found
+    columns = dict[tuple[str, str], Array]()
+    for joint, (share, angle) in cast(dict[str, tuple[Array, Array]], recording.kept[key]).items():
+        rate = differentiate(angle, recording.period)
+        slope = differentiate(rate, recording.period)
+        own = share[:, ROTATIONAL_AXES.index(fit.axis)]
+        for kind, turned, its_rate in (("gain", angle, rate), ("late", rate, slope)):
+            torque = fit.values[0] * turned[rows] + fit.values[1] * its_rate[rows]
+            columns[joint, kind] = own * np.nan_to_num(torque)
+    return columns
