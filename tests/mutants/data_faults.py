@@ -46,6 +46,20 @@ DATA_FAULTS = (
         ("feet/assess/test_play.py",),
     ),
     Mutant(
+        "feet/place/misread_joints.py", "a joint that is late is early",
+        "'late' if self.size > 0", "'late' if self.size < 0",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "a joint that moves no number is told", "bool(moved.any())", "True",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "any joint that explains a little is misread",
+        "alone.squares < BETTER * found[0].squares", "alone.squares < 0.0",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
         "feet/prepare_log.py", "an attitude is put right once", "TILT_ROUNDS = 3", "TILT_ROUNDS = 1",
         ("sensors/test_tilt_error.py",),
     ),
