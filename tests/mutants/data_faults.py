@@ -42,7 +42,12 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/play.py", "encoders that are late have play",
-        "if late.squares < play.squares:", "if late.squares < 0.0:",
+        "if late.squares < play.squares or", "if late.squares < 0.0 or",
+        ("feet/assess/test_play.py",),
+    ),
+    Mutant(
+        "feet/assess/play.py", "play that moves no number is told",
+        " or wide.holds(play.values[:2] - found.values[:2])", "",
         ("feet/assess/test_play.py",),
     ),
     Mutant(
@@ -51,7 +56,8 @@ DATA_FAULTS = (
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
-        "feet/place/misread_joints.py", "a joint that moves no number is told", "bool(moved.any())", "True",
+        "feet/place/misread_joints.py", "a joint that moves no number is told",
+        "not wide.holds(fit.values[:2] - usual[:2])", "True",
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(

@@ -100,8 +100,8 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     walks = walk_stiffness(ready.recordings, wide)
     own = [
-        *play_notes(thin.fitted, fit, blocks, shared),
-        *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
+        *play_notes(thin.fitted, wide, blocks, shared),
+        *encoder_play_notes(ready.fitted, wide, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, wide, blocks, shared),
         *misread_joint_notes(ready.robot, ready.fitted, wide, blocks),
         *late_recordings(wide, blocks, shared),

@@ -13,7 +13,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
-from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.interval_width.cause import SINGULAR
 from plantar.feet.recording import Recording, within_stances
@@ -27,7 +27,6 @@ from plantar.signals.orientation import attitude
 MISREAD = "joint_misread"
 SURE = 5.0  # deviations of what is misread
 BETTER = 1.5  # times less is left of the squares than by the bush alone
-WORTH = 0.01  # of stiffness or damping, by which another one follows: less matters to nobody
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE = 0.2, 0.03  # share; s
@@ -88,9 +87,8 @@ def _misread(
         size, std = float(fit.values[-1]), float(fit.std[-1])
         most = GAIN if kind == "gain" else LATE
         if SURE * std < abs(size) < most and fit.condition_number < SINGULAR:
-            inside = np.maximum(NORMAL95 * wide.std[:2], WORTH * np.abs(usual[:2]))
-            moved = np.abs(fit.values[:2] - usual[:2]) > inside
-            yield Misread(joint, kind, size, fit.squares, bool(moved.any()))
+            matters = not wide.holds(fit.values[:2] - usual[:2])
+            yield Misread(joint, kind, size, fit.squares, matters)
 
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
