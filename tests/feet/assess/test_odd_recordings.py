@@ -131,3 +131,11 @@ def test_no_number_of_an_odd_axis_is_usable(robot: RobotModel) -> None:
     told = {note.text.split(": stiffness")[0] for note in result.notes if note.code == CODE}
     assert told == {"sway_1: left pitch", "sway_1: left roll"}
     assert {row.foot for row in result.parameters if row.axis != "z" and row.verdict == "usable"} == {"right"}
+
+
+@pytest.mark.parametrize(("shares", "odd"), [([0.1], 0), ([0.0], None), ([0.1, 0.1], 0), ([0.1, 0.0], 1)])
+def test_of_logs_without_noise_nothing_is_unsure_and_the_odd_one_is_found(
+    shares: list[float], odd: int | None
+) -> None:
+    found = furthest(Differences(np.array(shares), np.zeros((len(shares), len(shares)))))
+    assert (found and found.place) == odd

@@ -14,7 +14,7 @@ import numpy as np
 
 from plantar.conventions import NORMAL95, Array
 from plantar.estimation import Block, fit_blocks, influences_of
-from plantar.estimation.random_effects import Differences, share_between
+from plantar.estimation.random_effects import LEAST, Differences, share_between
 from plantar.feet.interval_width.between_recordings import among, beside_one
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside
@@ -120,9 +120,10 @@ def _beside_others(shares: Array, covariance: Array, place: int) -> Odd:
 
 
 def _apart(shares: Array, covariance: Array) -> float:
-    """By which share these differ among one another; nothing is known of one alone."""
+    """By which share these differ among one another; nothing is known of one alone. Never 0: without noise a covariance
+    is."""
     if len(shares) < 2:
-        return 0.0
+        return LEAST
     step = np.eye(len(shares))[1:] - np.eye(len(shares))[0]
     beside = Differences(step @ shares, step @ covariance @ step.T)
     return share_between([beside], float(np.sqrt(np.mean(np.diag(beside.covariance))))).share
