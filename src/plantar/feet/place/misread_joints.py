@@ -15,7 +15,6 @@ import numpy as np
 from plantar.contact.deflection import foot_motion, path_to
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, fit_blocks
-from plantar.feet.interval_width.cause import SINGULAR
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, recordings_of
@@ -30,6 +29,7 @@ BETTER = 1.5  # times less is left of the squares than by the bush alone
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE = 0.2, 0.03  # share; s
+SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
 class Misread(NamedTuple):
@@ -94,26 +94,32 @@ def _misread(
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
     """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
     each second by which it is read later."""
-    foot, log, rows = fit.foot, recording.log, recording.rows(fit.foot)
-    key = (MISREAD, foot)  # both axes ask
-    if key not in recording.kept:
-        positions, (orientation, _) = log.positions(robot), attitude(log, robot.required_imu, [])
-        path, found = path_to(robot, foot)[0], dict[str, tuple[Array, Array]]()
-        for joint in path.joints:
-            turns, still = np.zeros_like(positions[rows]), np.zeros((int(rows.sum()), 3))
-            turns[:, joint] = 1.0
-            share = foot_motion(path, positions[rows], turns, orientation[rows], still)
-            angle = within_stances(
-                positions[:, [joint]], recording.period, recording.cutoff, recording.stances[foot]
-            )
-            found[robot.joint_names[joint]] = (share.encoder_rate, angle[:, 0])
-        recording.kept[key] = found
-    columns = dict[tuple[str, str], Array]()
-    for joint, (share, angle) in cast(dict[str, tuple[Array, Array]], recording.kept[key]).items():
+    rows, columns = recording.rows(fit.foot), dict[tuple[str, str], Array]()
+    for joint, (shares, angle) in _turns(robot, recording, fit.foot).items():
         rate = differentiate(angle, recording.period)
         slope = differentiate(rate, recording.period)
-        own = share[:, ROTATIONAL_AXES.index(fit.axis)]
+        own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
         for kind, turned, its_rate in (("gain", angle, rate), ("late", rate, slope)):
             torque = fit.values[0] * turned[rows] + fit.values[1] * its_rate[rows]
             columns[joint, kind] = own * np.nan_to_num(torque)
     return columns
+
+
+def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:
+    """Of each joint between IMU and foot, how much of its turn is the bush's in pitch and roll, (n, 2) at the rows of a
+    fit, and its angle (N,) [rad] through the fit's filter."""
+    key = (MISREAD, foot)  # both axes ask
+    if key not in recording.kept:
+        log, rows, found = recording.log, recording.rows(foot), dict[str, tuple[Array, Array]]()
+        positions, (orientation, _) = log.positions(robot), attitude(log, robot.required_imu, [])
+        path, still = path_to(robot, foot)[0], np.zeros((int(rows.sum()), 3))
+        for joint in path.joints:
+            turns = np.zeros_like(positions[rows])
+            turns[:, joint] = 1.0
+            shares = foot_motion(path, positions[rows], turns, orientation[rows], still).encoder_rate
+            angle = within_stances(
+                positions[:, [joint]], recording.period, recording.cutoff, recording.stances[foot]
+            )
+            found[robot.joint_names[joint]] = (shares, angle[:, 0])
+        recording.kept[key] = found
+    return cast(dict[str, tuple[Array, Array]], recording.kept[key])
