@@ -106,7 +106,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *misread_joint_notes(ready.robot, ready.fitted, wide, blocks),
         *late_recordings(wide, blocks, shared),
         *odd_recordings(wide, blocks, shared),
-        *odd_walks(wide, walks),
+        *odd_walks(wide, walks, thin.fitted, blocks),
     ]
     faults = [
         *data_faults(ready.fitted, fit),
