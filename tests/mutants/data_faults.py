@@ -66,6 +66,10 @@ DATA_FAULTS = (
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
+        "faults/channels.py", "slow sensors lose frames", "again < 0.5 and longest", "longest",
+        ("faults/test_channels.py",),
+    ),
+    Mutant(
         "feet/prepare_log.py", "an attitude is put right once", "TILT_ROUNDS = 3", "TILT_ROUNDS = 1",
         ("sensors/test_tilt_error.py",),
     ),
