@@ -34,8 +34,8 @@ class FittedModel:
     `moment_arms` [m]: by how much the bush's centre is aside and above its place; `turned` [rad]: by how much the
     force sensor is turned about the vertical, so that the other axis' torque shows in this one; `leans` [rad]: about
     the other axis, so that the yaw torque does; `crosstalk` [N.m/N]: of the horizontal force that turns the
-    other axis; `imu_turned` [rad]: by how much the IMU is turned about each of its axes, as far as that shows while
-    joints between it and the foot move.
+    other axis; `imu_turned` [rad]: the turn about each of the IMU's axes that puts its angles right, as far as that
+    shows while joints between it and the foot move.
     Of the recordings that were fitted: `offsets` [N.m], `initial_states` of the model's memory in each recording's
     runs, and the `drifts` that its path is without.
     """
@@ -84,7 +84,8 @@ class FittedModel:
 class AxisFit(FittedModel):
     """A fitted model and how well it is known: `covariance`, `freedom` and `white_std` run over values and shape.
     `equivalent`: K and C of spring and damper over the same motions; `hidden_share`: of the stiffness, that a memory
-    would make which other axes of the robot show and this one's motions do not exclude."""
+    would make which other axes of the robot show and this one's motions do not exclude. `place_std`: of `moment_arms`,
+    `turned` and `imu_turned`, None where nobody knows; `place_variance`: what these add to the variances, by cause."""
 
     covariance: Array
     freedom: Array
@@ -95,6 +96,8 @@ class AxisFit(FittedModel):
     reason: str
     notes: tuple[Note, ...] = ()
     hidden_share: float = 0.0
+    place_std: tuple[float | None, ...] = (None,) * 6
+    place_variance: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def std(self) -> Array:
