@@ -8,10 +8,12 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from plantar.conventions import Array, Axis
+from plantar.conventions import NORMAL95, Array, Axis
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import BushModel
 from plantar.notes import Note
+
+WORTH = 0.01  # of stiffness or damping: less matters to nobody, even of logs without noise
 
 
 class AngleDrift(NamedTuple):
@@ -100,3 +102,8 @@ class AxisFit(FittedModel):
     @property
     def std(self) -> Array:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    def holds(self, moved: Array) -> bool:
+        """Whether stiffness and damping that are `moved` (2,) stay within their intervals, or nearly where they are."""
+        inside = np.maximum(NORMAL95 * self.std[:2], WORTH * np.abs(self.values[:2]))
+        return bool((np.abs(moved) <= inside).all())
