@@ -20,6 +20,8 @@ from plantar.model_selection.grid import Pieces, fit_all
 from plantar.model_selection.partialled_out import robust_covariance
 from plantar.model_selection.variable_projection import (
     ITERATIONS,
+    LANDING_GAIN,
+    LANDING_ITERATIONS,
     LANDINGS,
     NARROWEST_SCAN,
     NARROWING,
@@ -140,36 +142,47 @@ def refine(
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
-    Where the foot steps, a search begins again from the states that the air leaves for each landing, up to LANDINGS
-    times and as long as that helps. One that had come to rest (`rested`) with other torques looks about it for corners
-    only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong.
+    Where the foot steps, they go from the best of the states that the air leaves for each landing. A fit that had come
+    to rest (`rested`) with other torques keeps its landings and looks about it for corners only nearby. Not `refined`,
+    it stays at the start: enough to see that a model is wrong.
     """
-    remembers = problem.model.remembers
-    iterations = ITERATIONS if refined and (len(start.shape) or remembers) else 0
-    best, point = start, start
-    landings = 0 if rested or not iterations else LANDINGS
-    for search in range(1 + landings):
+    if refined and (len(start.shape) or problem.model.remembers):
+        if problem.lands and not rested:
+            start = _about_best_landings(problem, start, limits)
         width = WIDEST_SCAN * (NARROWING if rested else 1.0)
-        for _ in range(iterations):
-            moved = step(problem, point, limits)
-            if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-                rest = moved or point
-                scanned = scan(problem, rest, width) if remembers else None
-                if remembers and scanned is None:
-                    scanned = scan_shape(problem, rest, limits, width)
-                width *= NARROWING
-                if scanned is None and (not remembers or width < NARROWEST_SCAN):
-                    point = moved or point
-                    break
-                moved = scanned or moved or point
-            point = moved
-        if search and point.squares > (1 - SETTLED) * best.squares:
+        start = _searched(problem, start, limits, ITERATIONS, width)
+    return _finished(problem, start, limits)
+
+
+def _about_best_landings(problem: Problem, start: Point, limits: Array) -> Point:
+    """The point after a few steps from the states at landings that parameters so found make, as long as that helps."""
+    best = _searched(problem, start, limits, LANDING_ITERATIONS)
+    for _ in range(LANDINGS):
+        again = _searched(problem, landed(problem, best), limits, LANDING_ITERATIONS)
+        if again.squares > (1 - LANDING_GAIN) * best.squares:
             break
-        best, again = point, landed(problem, point) if search < landings else None
-        if again is None:
-            break
-        point = again
-    return _finished(problem, best, limits)
+        best = again
+    return best
+
+
+def _searched(
+    problem: Problem, point: Point, limits: Array, iterations: int, width: float = WIDEST_SCAN
+) -> Point:
+    """Where steps from a point come to rest, and scans of such a `width` about there, or after so many of them."""
+    remembers = problem.model.remembers
+    for _ in range(iterations):
+        moved = step(problem, point, limits)
+        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
+            rest = moved or point
+            scanned = scan(problem, rest, width) if remembers else None
+            if remembers and scanned is None:
+                scanned = scan_shape(problem, rest, limits, width)
+            width *= NARROWING
+            if scanned is None and (not remembers or width < NARROWEST_SCAN):
+                return rest
+            moved = scanned or rest
+        point = moved
+    return point
 
 
 def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
