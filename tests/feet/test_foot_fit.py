@@ -158,7 +158,7 @@ def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
     ready: Any = SimpleNamespace(
         fitted=[recording], settings=FeetSettings(), sensor_delay=SimpleNamespace(doubtful=False)
     )
-    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {})
+    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {}, {})
     assert asked == [("pitch", 0.0), ("roll", 0.0), *([] if steps else [("roll", 0.03)])]
 
 

@@ -133,8 +133,13 @@ def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
     """The fit of the same recordings with other torques, from where it came to rest before."""
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
-    states = np.concatenate([before.initial_states[each.label] for each in prepared])
-    return refine(problem, problem.at(before.shape, states), before.limits, rested=True)
+    return refine(problem, where_it_rested(problem, before), before.limits, rested=True)
+
+
+def where_it_rested(problem: Problem, before: ModelFit) -> Point:
+    """The point of an earlier fit of the same recordings."""
+    states = [before.initial_states[each.label] for each in problem.prepared]
+    return problem.at(before.shape, np.concatenate(states))
 
 
 def refine(
