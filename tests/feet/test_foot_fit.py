@@ -145,7 +145,14 @@ def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
     asked: list[tuple[str, float]] = []
 
     def fitted(
-        recordings: Any, foot: str, axis: str, settings: Any, model: Any, place: PlaceSpread, timed: bool
+        recordings: Any,
+        foot: str,
+        axis: str,
+        settings: Any,
+        model: Any,
+        place: PlaceSpread,
+        timed: bool,
+        before: Any,
     ) -> Any:
         asked.append((axis, place.height))
         return SimpleNamespace(moment_arms=(0.0, 0.03 if axis == "pitch" else 0.0))

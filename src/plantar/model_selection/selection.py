@@ -91,9 +91,10 @@ def choose_model(
     motions = [each.motion for each in prepared]
     applicable = [model for model in models if model.applies(motions)]
     untried = [model.name for model in models if model not in applicable]
+    earlier = {} if before is None else {score.model.name: score.fit for score in before.ranking}
     simple = sorted(
         (
-            Candidate.of(model, prepared, folds, shared_offset)
+            Candidate.of(model, prepared, folds, shared_offset, earlier.get(model.name))
             for model in applicable
             if model.elaborates is None
         ),
@@ -103,7 +104,6 @@ def choose_model(
     scores: list[ModelScore] = []
     errors: list[Array] = []
     # Simple models first, the best one before the others; then what elaborates them, near their fits.
-    earlier = {} if before is None else {score.model.name: score.fit for score in before.ranking}
     order: list[Candidate | BushModel] = [
         *simple,
         *(each for each in applicable if each.elaborates is not None),
