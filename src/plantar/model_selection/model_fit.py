@@ -149,14 +149,14 @@ def refine(
 
     Where the foot steps, they go from the best of the states that the air leaves for each landing. A fit that had come
     to rest (`rested`) with other torques keeps its landings and looks about it for corners only nearby. Not `refined`,
-    it stays at the start: enough to see that a model is wrong.
+    it stays at the start: enough to see that a model is wrong, as are deviations without what a fit takes up of noise.
     """
     if refined and (len(start.shape) or problem.model.remembers):
         if problem.lands and not rested:
             start = _about_best_landings(problem, start, limits)
         width = WIDEST_SCAN * (NARROWING if rested else 1.0)
         start = _searched(problem, start, limits, ITERATIONS, width)
-    return _finished(problem, start, limits)
+    return _finished(problem, start, limits, refined)
 
 
 def _about_best_landings(problem: Problem, start: Point, limits: Array) -> Point:
@@ -190,14 +190,14 @@ def _searched(
     return point
 
 
-def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
+def _finished(problem: Problem, point: Point, limits: Array, refined: bool) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
     residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
     durations = [each.duration for each in problem.prepared]
     covariance, freedom = robust_covariance(linear, residuals, durations)
     lacks = np.ones(linear.size)
-    if all(each.steps is None for each in problem.prepared):
+    if refined and all(each.steps is None for each in problem.prepared):
         lacks = lacking(linear, [each.drift for each in problem.prepared], durations)
     wide = np.concatenate([lacks * scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]
