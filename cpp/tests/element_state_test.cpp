@@ -52,5 +52,16 @@ int main() {
   check::near(unknown.gap(), 0.5, 1e-12, "half of it is known");
   unknown.hold(0.5), unknown.load(0.5);
   check::near(unknown.gap(), 0.75, 1e-12, "a sole that rolls bends nothing, but one does not know");
+  // From end to end in steps of 0.4 slip angles: the mean of both ends of each, also where it begins to slip.
+  for (const double begins : {0.0, 0.3, 0.7}) {
+    const auto at = [begins](int tick) { return 0.4 * SLIP * (tick + begins); };
+    const auto state = [at](int tick) { return std::min(at(tick) / SLIP - 1.0, 1.0); };
+    ElementState element;
+    element.begin(SLIP, 5.0 * SLIP), element.load(0.0), element.load(0.5 * (at(0) + at(1)));
+    for (int tick = 1; tick < 9; ++tick) {
+      check::near(element.state(), 0.5 * (state(tick - 1) + state(tick)), 1e-12, "the mean of both ends");
+      element.follow(0.5 * (at(tick) + at(tick + 1)));
+    }
+  }
   return check::result();
 }

@@ -29,6 +29,8 @@ class ElementState {
   void begin(double slip, double angle) noexcept { slip_ = slip, low_ = {-1.0, angle}, high_ = {1.0, angle}; }
   // The bush on the ground is bent to `angle` [rad].
   void load(double angle) noexcept { low_.bend(angle, slip_), high_.bend(angle, slip_); }
+  // The same from one period's mean of both ends to the next one's; then the state is that of both ends, too.
+  void follow(double angle) noexcept { low_.follow(angle, slip_), high_.follow(angle, slip_); }
   // The sole has turned with the ankle for a while, the bush hardly. It is at `angle` now.
   void hold(double angle) noexcept {
     low_.angle = high_.angle = angle;
@@ -47,6 +49,13 @@ class ElementState {
     void bend(double to, double slip) noexcept {
       state = std::clamp(state + (to - angle) / slip, -1.0, 1.0);
       angle = to;
+    }
+    // The end of the last period is half a step on. Where it slips within this one, it has that end's way left to slip,
+    // and in the mean of both ends half of it.
+    void follow(double to, double slip) noexcept {
+      const double step = (to - angle) / slip, half = 0.5 * std::abs(step), beyond = std::abs(state + step) - 1.0;
+      bend(to, slip);
+      if (beyond > -half) state = std::copysign(1.0 - 0.5 * std::max(half - beyond, 0.0), step);
     }
     // No torque: angle + pull·state = 0, with a state that sticks on the way or slips.
     void unload(double pull, double slip) noexcept {

@@ -15,20 +15,19 @@ constexpr double NEWLY_KNOWN = 0.005;  // of an element's range: less changes no
 // rows' offset changes; where little is unknown, the rows carry it. A sole that rolls over its edge turns with the
 // ankle, and the bush stays about as it is. What a foot lands with is known from how it lifted; it is loaded from there
 // until the sole lies flat.
-void FootTracker::follow_elements(const double* angles, const double* rates, double time, double dt) noexcept {
-  const bool stands = estimate_.contact == ContactState::stance, rolls = stands && (estimate_.flags & EDGE);
-  if (stood_ && !stands) unload_elements();
-  const bool lands = flat_ && estimate_.contact == ContactState::landing;
-  stood_ = stands;
+void FootTracker::follow_elements(const Middle& row, double time, double dt) noexcept {
+  const double *angles = row.angles.data() + 4, *rates = row.angles.data() + 2;
+  if (stood_ && !row.stands) unload_elements();
+  stood_ = row.stands;
   bool known = false, suspected = false;
-  for (int a = 0; a < 2 && !rolls; ++a) {
+  for (int a = 0; a < 2 && !row.rolls; ++a) {
     ElementState& element = element_[a];
-    if (begun_elements_ && (stands || lands)) {
+    if (begun_elements_ && (row.stands || row.lands)) {
       if (rolled_) element.hold(angles[a]), opened_[a] = element.gap();
       if (turned(rates_before_[a], rates[a]))
-        element.load(turning_angle(angles_before_[a], rates_before_[a], rates[a], dt));
-      element.load(angles[a]);
-      if (lands) opened_[a] = element.gap();
+        element.follow(turning_angle(angles_before_[a], rates_before_[a], rates[a], dt));
+      element.follow(angles[a]);
+      if (row.lands) opened_[a] = element.gap();
       const bool wide = opened_[a] > LEAN / slip_angle_[a];
       if (wide && opened_[a] - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
     } else if (lifted_) {
@@ -41,7 +40,7 @@ void FootTracker::follow_elements(const double* angles, const double* rates, dou
   }
   begun_elements_ = true;
   std::copy_n(angles, 2, angles_before_), std::copy_n(rates, 2, rates_before_);
-  rolled_ = rolls;
+  rolled_ = row.rolls;
   if (!known && !suspected) return;
   commit(time);
   for (int a = 0; a < 2; ++a) opened_[a] = element_[a].gap();

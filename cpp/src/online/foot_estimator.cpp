@@ -154,6 +154,9 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   else
     slip.restart();
   const bool contradiction = weight_differs(total) || turns_differ;
+  // Before the delays are watched: what it finds late is not believed for a tick.
+  feet[next_work / FootTracker::PIECES].work(next_work % FootTracker::PIECES);
+  next_work = (next_work + 1) % (FootTracker::PIECES * static_cast<int>(feet.size()));
   Lateness all, imu;
   for (const FootTracker& foot : feet) all += foot.lateness(), imu += foot.imu_lateness();
   const bool all_late = delay_watch.late(all, model.wrench_delay_std, period);
@@ -171,8 +174,6 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   }
   known = true;
   watch_ground();
-  feet[next_work / FootTracker::PIECES].work(next_work % FootTracker::PIECES);
-  next_work = (next_work + 1) % (FootTracker::PIECES * static_cast<int>(feet.size()));
   for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
 }
 

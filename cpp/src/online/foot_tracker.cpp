@@ -166,6 +166,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   if (struck) flags |= IMPACT;
   if (doubt.contradiction) flags |= CONTRADICTION;
   told_late_ = doubt.late || doubt.late_imu;
+  if (told_late_) estimate_.pitch.identified = estimate_.roll.identified = false;
   if (doubt.late) flags |= LATE_WRENCH;
   if (doubt.late_imu) flags |= LATE_IMU;
   if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;

@@ -89,9 +89,19 @@ class FootTracker {
     double channels[CHANNELS];
   };
 
+  // A tick's signals in the middle of its period, in the order of `angles_` and `forces_`; the parts of its rates that are
+  // a mean of both ends and a difference, and their mean over the period.
+  struct Middle {
+    double time, dt;
+    bool stands, rolls, lands;
+    std::array<double, 8> angles = {};
+    std::array<double, 7> forces = {};
+    double of_ends[2] = {}, difference[2] = {}, mean_rate[2] = {};
+  };
+
   void restart_filter() noexcept;
   void filter(const FootKinematics& motion, double time, double dt, double period) noexcept;
-  void follow_elements(const double* angles, const double* rates, double time, double dt) noexcept;
+  void follow_elements(const Middle& row, double time, double dt) noexcept;
   void unload_elements() noexcept;
   void hold(double time, double dt, const double* channels) noexcept;
   void commit(double before) noexcept;
@@ -122,6 +132,8 @@ class FootTracker {
   std::array<double, 6> raw_ = {}, wrench_ = {};
   std::array<double, 5> before_ = {};     // load, force x, y, both torques, of the last tick
   double turning_before_[2] = {};
+  Middle last_ = {}, before_last_ = {};
+  int middles_ = 0;                       // of ticks that followed each other, up to three
   ElementState element_[2], hanging_[2];  // now, and in the air
   double opened_[2] = {};                 // the elements' gaps when the offset of the rows began
   Lateness late_[2], late_imu_[2];        // as its own axes show it
