@@ -14,7 +14,9 @@ TITLES = {
 }
 
 
-@pytest.mark.parametrize("title", [pages.REASONS, pages.IDENTIFIABLE, pages.STRUCTURE, pages.JOINTS])
+@pytest.mark.parametrize(
+    "title", [pages.REASONS, pages.IDENTIFIABLE, pages.STRUCTURE, pages.JOINTS, pages.ONLINE]
+)
 def test_a_page_of_that_title_is_in_the_documentation(title: str) -> None:
     assert title in TITLES
 

@@ -63,8 +63,13 @@ def sha256(path: str | os.PathLike[str]) -> str:
         return hashlib.file_digest(handle, "sha256").hexdigest()
 
 
-def read_bounded(path: str | os.PathLike[str], limit: int, error: type[PlantarError] = PlantarError) -> bytes:
-    """The file's bytes, or `error` when it is missing, unreadable or longer than `limit` bytes."""
+def read_bounded(
+    path: str | os.PathLike[str],
+    limit: int,
+    error: type[PlantarError] = PlantarError,
+    valid: str = "a smaller file",
+) -> bytes:
+    """The file's bytes, or `error` when it is missing, unreadable or longer than `limit` bytes: `valid` says what is."""
     try:
         with open(path, "rb") as handle:
             blocks, size = [], 0
@@ -75,5 +80,5 @@ def read_bounded(path: str | os.PathLike[str], limit: int, error: type[PlantarEr
     except OSError as problem:
         raise error(f"cannot be read: {problem.strerror}", path=path) from problem
     if len(content) > limit:
-        raise error(f"is larger than {limit} bytes", path=path, valid="a smaller file")
+        raise error(f"is larger than {limit} bytes", path=path, valid=valid)
     return content

@@ -8,6 +8,7 @@ from typing import Final
 REASONS: Final = "Why did my fit fail?"
 IDENTIFIABLE: Final = "Which parameters can be identified at all?"
 STRUCTURE: Final = "Is it the foot, or the leg, or the hip?"
+ONLINE: Final = "Feet in the control loop"
 JOINTS: Final = "Friction and rotor inertia of joints"
 NOT_USABLE: Final = ("weak", "unidentifiable")
 

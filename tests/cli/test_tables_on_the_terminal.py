@@ -226,11 +226,13 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
     print_replay(Replay(np.arange(2000.0), ("left",), values, latency), (K, C))
     lines = capsys.readouterr().out.splitlines()
     heads, rows = under(lines, "At the end of the log")
-    assert heads == ["foot", "axis", "parameter", "value", "95 %", "unit", "verdict", "reason"]
+    assert heads == ["foot", "axis", "parameter", "value", "95 %", "unit", "verdict"]
     assert rows[:2] == [
-        ["left", "pitch", "stiffness", "434", "± 3.5", "N.m/rad", "usable", "narrow"],
-        ["left", "pitch", "damping", "20", "± 7.9", "N.m.s/rad", "weak", "wide"],
+        ["left", "pitch", "stiffness", "434", "± 3.5", "N.m/rad", "usable"],
+        ["left", "pitch", "damping", "20", "± 7.9", "N.m.s/rad", "weak"],
     ]
+    assert [line for line in lines if "wide" in line] == ["left pitch damping: weak: wide."]
+    assert any("what each flag means" in line for line in lines)
     heads, rows = under(lines, "Through the log")
     assert heads == ["foot", "stands %", "pitch mrad rms", "roll mrad rms", "flags, % of the samples"]
     assert lines[-1] == "a step: median 4.0 µs, 99.9 % 12.0 µs, longest 20.0 µs"

@@ -1,11 +1,11 @@
-"""What a replay says of the vertical stiffness, and of motions that were too small."""
+"""What a replay says of where a foot stands, of the vertical stiffness, and of motions that were too small."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from plantar.online.estimates import FIELDS, Flag
+from plantar.online.estimates import FIELDS, Contact, Flag
 from plantar.online.replay import Replay
 from plantar.results.feet_rows import Parameter
 
@@ -13,6 +13,15 @@ from plantar.results.feet_rows import Parameter
 def ended(**values: float) -> Replay:
     row = np.array([values.get(name.replace(".", "_"), 0.0) for name in FIELDS])
     return Replay(np.zeros(1), ("left",), row[None, None], np.zeros(1))
+
+
+def test_a_foot_whose_readings_are_missing_is_not_counted_as_one_that_stands() -> None:
+    def counted(contact: Contact, flags: int) -> bool:
+        return bool(ended(contact=contact, flags=flags).stands("left")[0])
+
+    assert counted(Contact.STANCE, Flag.EDGE)
+    assert not counted(Contact.STANCE, Flag.INPUT_MISSING | Flag.NOT_STANDING)
+    assert not counted(Contact.LANDING, 0)
 
 
 def z_row(value: float, half: float) -> Parameter:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.markup import escape
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import (
@@ -21,14 +22,16 @@ from plantar.cli.console.terminal import (
     progress,
     table,
 )
+from plantar.cli.identify.feet_tables import advised
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.errors import SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
-from plantar.online.estimates import Contact, Flag
+from plantar.online.estimates import Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import UNKNOWN, Replay
 from plantar.online.verdicts import judged, log_notes
+from plantar.pages import ONLINE
 from plantar.results.feet import FeetResult, Parameter
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
@@ -42,6 +45,10 @@ PIECE = 1.0  # s of the log, behind which the table may be refreshed
 REFRESH = 0.1  # s between two tables
 KINDS: Sequence[Format] = ("png", "svg", "pdf")
 LONGEST_WAIT = 120.0  # s for a browser to open the page
+DELAY_HELP = (
+    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: the result's; without "
+    "a result 0, and the damping's interval is wide enough for what the robot file allows."
+)
 RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, places, delay and cutoff are used."
 
 
@@ -49,7 +56,9 @@ def run(
     robot: options.Robot,
     log: Annotated[Path, typer.Argument(help="Log to replay.", metavar="LOG")],
     result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
-    wrench_delay: options.WrenchDelay = None,
+    wrench_delay: Annotated[
+        float | None, typer.Option(parser=options.seconds, metavar="MS", help=DELAY_HELP)
+    ] = None,
     cutoff: Annotated[
         float | None,
         typer.Option(metavar="HZ", help="Of the filters before the regressions, in Hz; the result's, or 5."),
@@ -170,12 +179,19 @@ def _show(robot: RobotModel, replay: Replay, port: int) -> None:
 
 
 def _known(rows: Sequence[Parameter], title: str) -> Table:
-    heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict", "reason")
+    heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict")
     cells = [
-        (row.foot, row.axis, row.name, number(row.value), f"± {_plain(row.half_width)}", row.unit, row.verdict,
-         row.reason)
+        (
+            row.foot,
+            row.axis,
+            row.name,
+            number(row.value),
+            f"± {_plain(row.half_width)}",
+            row.unit,
+            row.verdict,
+        )
         for row in rows
-    ]  # fmt: skip
+    ]
     return table(title, heads, cells, [VERDICT_STYLE[row.verdict] for row in rows])
 
 
@@ -187,6 +203,8 @@ def _plain(half: float | None) -> str:
 def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
     out = console()
     out.print(_known(rows, "At the end of the log"))
+    for verdict, names, rest in advised(rows):
+        out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     through = (
         "foot",
         "stands %",
@@ -194,6 +212,7 @@ def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
         "flags, % of the samples",
     )
     out.print(table("Through the log", through, [_foot_row(replay, foot) for foot in replay.feet]))
+    out.print(f"“{ONLINE}” in plantar's documentation says what each flag means.")
     took = replay.latency_us
     out.print(
         f"a step: median {took['median']:.1f} µs, 99.9 % {took['p999']:.1f} µs, longest {took['max']:.1f} µs"
@@ -201,7 +220,7 @@ def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
 
 
 def _foot_row(replay: Replay, foot: str) -> tuple[str, ...]:
-    stands = replay.column(foot, "contact") == Contact.STANCE
+    stands = replay.stands(foot)
     flags = replay.column(foot, "flags").astype(int)
     shares = ((flag, float((flags & flag > 0).mean())) for flag in Flag)
     said = ", ".join(f"{flag.name} {100 * share:.1f}" for flag, share in shares if share and flag.name)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Array, Axis
-from plantar.online.estimates import FIELDS, Estimated, Flag, FootEstimate, foot_estimate
+from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Array, Axis, Mask
+from plantar.online.estimates import FIELDS, Contact, Estimated, Flag, FootEstimate, foot_estimate
 from plantar.results.feet_rows import Parameter, Verdict
 
 # Half width of the 95 % interval over the value, less than in a batch result: 99 in 100 such dampings are within 8 %.
@@ -30,7 +30,7 @@ LATE = {
 }
 BELOW = "below zero, which no bush is: force sensors that are late look like this"
 TELL_DELAY = "tell how late they are (--wrench-delay), or let identify feet find it and give its result"
-IDENTIFY = "run identify feet on logs of this robot, and give its result"
+IDENTIFY = "run `plantar identify feet` on logs of this robot, and give its result (--result)"
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,11 @@ class Replay:
     def column(self, foot: str, name: str) -> Array:
         """One of `plantar.online.estimates.FIELDS` through the log, (N,), such as `pitch.deflection` [rad]."""
         return self.rows[:, self.feet.index(foot), FIELDS.index(name)]
+
+    def stands(self, foot: str) -> Mask:
+        """Where the foot is known to stand, (N,): a reading that is missing leaves its contact as it was."""
+        away = self.column(foot, "flags").astype(int) & Flag.NOT_STANDING
+        return (self.column(foot, "contact") == Contact.STANCE) & (away == 0)
 
     def estimate(self, foot: str, sample: int = -1) -> FootEstimate:
         """A foot's estimate at a sample; the last one if left out."""

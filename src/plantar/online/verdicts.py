@@ -13,7 +13,7 @@ from plantar.online.replay import IDENTIFY
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 
-UNTOLD = "a robot file that is wrong does not show here, rubber with a memory in large motions only"
+UNTOLD = "without a batch result: a robot file that is wrong does not show here, a memory of the rubber in large motions only"
 
 
 def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:

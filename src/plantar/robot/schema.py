@@ -170,7 +170,7 @@ def read_yaml(path: Path) -> tuple[Any, bytes]:
 
     Raises RobotError: one line of why it cannot be read; it is too large, no YAML, or could grow without bound.
     """
-    content = read_bounded(path, FILE_LIMIT, RobotError)
+    content = read_bounded(path, FILE_LIMIT, RobotError, "a YAML file of some lines")
     try:
         _refuse_bombs(content, path)
         loader = yaml.SafeLoader(content)

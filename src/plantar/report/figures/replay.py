@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.online.estimates import Contact
 from plantar.online.replay import Replay
 from plantar.report.figures.plots import BLUE, COLUMNS, GREY, LINE, envelope, panels
 from plantar.signals.segments import runs
@@ -28,7 +27,7 @@ def replay_picture(replay: Replay) -> Drawing:
     time = replay.time[::stride]
     figure, rows = panels(3, len(columns), (2.6 * len(columns), 6.0), share_x=True)
     for place, (foot, axis) in enumerate(columns):
-        stands = replay.column(foot, "contact") == Contact.STANCE
+        stands = replay.stands(foot)
         deflection = np.where(stands, 1e3 * replay.column(foot, f"{axis}.deflection"), np.nan)
         rows[0, place].plot(*envelope(replay.time, deflection), color=BLUE, linewidth=LINE)
         for away in runs(~stands):
