@@ -216,7 +216,7 @@ def test_a_robot_file_that_is_not_text(tmp_path: Path) -> None:
 def test_a_huge_robot_file_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text("# " + "x" * 2**20)
-    with pytest.raises(RobotError, match="larger than.*a YAML file"):
+    with pytest.raises(RobotError, match=r"larger than.*a YAML file"):
         load_robot(path)
 
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from plantar.conventions import Array
 
-LEAST = (
-    1e-5  # share: who differs by less does not differ, and nothing is known better, not even without noise
-)
+# Share: who differs by less does not differ, and nothing is known better, not even without noise.
+LEAST = 1e-5
 TRIED = np.geomspace(LEAST, 0.2, 200)  # shares by which groups may differ
 HEAVY = 3.0  # degrees of freedom of the prior's tail: groups that differ by far more than it are believed
 
