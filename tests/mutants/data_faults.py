@@ -248,7 +248,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/sensor_hysteresis.py", "hysteresis that moves nothing is told",
-        "abs(moved) < NORMAL95 * float(wide.std[RATE])", "False", ("feet/assess/test_sensor_hysteresis.py",),
+        "abs(moved) < PART * NORMAL95 * float(wide.std[RATE])", "False", ("feet/assess/test_sensor_hysteresis.py",),
     ),
     Mutant(
         "feet/interval_width/joint_compliance.py", "joints bend half as much", "bent)[:size], compliance)",
