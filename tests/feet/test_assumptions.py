@@ -13,14 +13,14 @@ from biped_robot import FEET, Frame, Mounting
 from feet_trials import noisy
 from plantar.conventions import NORMAL95
 from plantar.feet.assess.diagnosis import REMEDY
-from plantar.feet.assumptions import CAUSES, TAKEN_UP
+from plantar.feet.assumptions import CAUSES
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.report.feet import feet_page
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import Assumption
-from plantar.results.feet_text import PRINTED_IN, assumption_cells
+from plantar.results.feet_text import NOT_FOUND, PRINTED_IN, assumption_cells
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 
@@ -67,7 +67,7 @@ def test_every_key_of_the_robot_file_has_its_row(found: FeetResult, usual: Robot
     keys = {field.name for field in fields(Uncertainty)}
     assert set(named) == keys - {"total_mass"}
     assert set(PRINTED_IN) == keys
-    assert set(CAUSES) | set(TAKEN_UP) <= keys
+    assert set(CAUSES) | set(NOT_FOUND) <= keys
     assert {cause for causes in CAUSES.values() for cause in causes} <= set(REMEDY)
     assert all(value == getattr(usual.uncertainty, name) for name, value in named.items())
 
@@ -98,7 +98,10 @@ def test_a_delay_that_no_log_shows_is_not_found(found: FeetResult) -> None:
     """The biped's forces are drawn, not moved by Newton."""
     one = row(found, "wrench_delay", "")
     assert (one.found, one.std) == (None, None)
-    assert "not in these logs" in one.remark
+    assert any(
+        line[0] == "wrench_delay" and line[3] == "not in these logs"
+        for line in assumption_cells(found.assumptions)
+    )
 
 
 def test_what_it_does_is_half_the_interval_that_it_alone_would_make(found: FeetResult) -> None:

@@ -24,34 +24,21 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "imu_mount": ("imu turn",),
     "between_recordings": ("between recordings", "between walks"),
 }
-# Where the logs show no number of its own.
-TAKEN_UP = {
-    "wrench_crosstalk": "like a bush that is elsewhere: counted in bush_position",
-    "encoder_zero": "taken up by the offset of each recording",
-    "joint_compliance": "not from logs of standing and walking",
-    "link_mass": "in how well wrench_delay is known",
-    "link_com": "in how well wrench_delay is known",
-    "total_mass": "not from the feet's forces, which it calibrates",
-    "between_recordings": "none: recordings are alike as far as they show",
-}
-NOT_SHOWN = "not in these logs"
 
 
 class Found(NamedTuple):
     """One number that logs show: `what` it is of ("" where there is one only), `value` and its deviation, if known."""
 
     what: str
-    value: float
+    value: float | None
     std: float | None
 
 
 def assumptions(ready: PreparedLogs, feet: Sequence[FootFit], apart: Apart) -> tuple[Assumption, ...]:
     """A row for each key of `uncertainty` and each number that the logs show of it. apart: what all axes show
     recordings to differ by."""
-    fits, limits = (
-        [fit for foot in feet for fit in foot.fits],
-        [row for foot in feet for row in foot.diagnosis],
-    )
+    fits = [fit for foot in feet for fit in foot.fits]
+    limits = [row for foot in feet for row in foot.diagnosis]
     found: dict[str, list[Found]] = {
         "wrench_gain": [
             Found(f"{foot}, beside the weight", gain.share, float(np.hypot(gain.std, gain.other)))
@@ -60,29 +47,17 @@ def assumptions(ready: PreparedLogs, feet: Sequence[FootFit], apart: Apart) -> t
         "wrench_delay": _delays(ready) if ready.sensor_delay.measured else [],
         "bush_position": [place for foot in ready.robot.feet for place in _places(foot, fits)],
         "imu_mount": _turns(ready, fits),
-        "between_recordings": [] if apart.shown is None else [_differences(apart.share, apart.shown)],
+        "between_recordings": []
+        if apart.shown is None
+        else [Found("", apart.share, float(np.ptp(apart.shown)) / (2 * NORMAL95))],
     }
     rows = []
     for name, assumed in asdict(ready.robot.uncertainty).items():
-        if name == "total_mass" and ready.robot.weighed is None:
-            continue
         widths = [_width(limits, number, CAUSES.get(name, ())) for number in ("stiffness", "damping")]
-        shown = found.get(name) or [Found("", float("nan"), None)]
-        for place, one in enumerate(shown):
-            known = np.isfinite(one.value)
-            rows.append(
-                Assumption(
-                    name=name,
-                    what=one.what,
-                    assumed=assumed,
-                    found=one.value if known else None,
-                    std=one.std,
-                    stiffness_percent=widths[0] if place == 0 else None,
-                    damping_percent=widths[1] if place == 0 else None,
-                    remark="" if known else TAKEN_UP.get(name, NOT_SHOWN),
-                )
-            )
-    return tuple(rows)
+        for what, value, std in found.get(name) or [Found("", None, None)]:
+            rows.append(Assumption(name, what, assumed, value, std, *widths))
+            widths = [None, None]
+    return tuple(row for row in rows if row.name != "total_mass" or ready.robot.weighed is not None)
 
 
 def _delays(ready: PreparedLogs) -> list[Found]:
@@ -129,10 +104,6 @@ def _together(what: str, told: Sequence[tuple[float, float | None]]) -> list[Fou
     mean = float(np.average(values, weights=deviations**-2))
     apart = float(np.sqrt(np.sum(((values - mean) / deviations) ** 2) / max(len(values) - 1, 1)))
     return [Found(what, mean, float(deviations.min()) * max(1.0, apart))]
-
-
-def _differences(share: float, shown: tuple[float, float]) -> Found:
-    return Found("", share, (shown[1] - shown[0]) / (2 * NORMAL95))
 
 
 def _width(limits: Sequence[Diagnosis], number: str, causes: Sequence[str]) -> float | None:

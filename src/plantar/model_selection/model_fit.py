@@ -151,43 +151,31 @@ def refine(
     to rest (`rested`) with other torques keeps its landings and looks about it for corners only nearby. Not `refined`,
     it stays at the start: enough to see that a model is wrong, as are deviations without what a fit takes up of noise.
     """
-    if refined and (len(start.shape) or problem.model.remembers):
-        if problem.lands and not rested:
-            start = _about_best_landings(problem, start, limits)
+    remembers, best, point = problem.model.remembers, start, start
+    landings = LANDINGS if problem.lands and not rested else -1
+    searching = refined and bool(len(start.shape) or remembers)
+    while searching:
+        searching = landings >= 0  # the last one is the whole search
         width = WIDEST_SCAN * (NARROWING if rested else 1.0)
-        start = _searched(problem, start, limits, ITERATIONS, width)
-    return _finished(problem, start, limits, refined)
-
-
-def _about_best_landings(problem: Problem, start: Point, limits: Array) -> Point:
-    """The point after a few steps from the states at landings that parameters so found make, as long as that helps."""
-    best = _searched(problem, start, limits, LANDING_ITERATIONS)
-    for _ in range(LANDINGS):
-        again = _searched(problem, landed(problem, best), limits, LANDING_ITERATIONS)
-        if again.squares > (1 - LANDING_GAIN) * best.squares:
-            break
-        best = again
-    return best
-
-
-def _searched(
-    problem: Problem, point: Point, limits: Array, iterations: int, width: float = WIDEST_SCAN
-) -> Point:
-    """Where steps from a point come to rest, and scans of such a `width` about there, or after so many of them."""
-    remembers = problem.model.remembers
-    for _ in range(iterations):
-        moved = step(problem, point, limits)
-        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-            rest = moved or point
-            scanned = scan(problem, rest, width) if remembers else None
-            if remembers and scanned is None:
-                scanned = scan_shape(problem, rest, limits, width)
-            width *= NARROWING
-            if scanned is None and (not remembers or width < NARROWEST_SCAN):
-                return rest
-            moved = scanned or rest
-        point = moved
-    return point
+        for _ in range(LANDING_ITERATIONS if searching else ITERATIONS):
+            moved = step(problem, point, limits)
+            if moved is None or moved.squares > (1 - SETTLED) * point.squares:
+                rest = moved or point
+                scanned = scan(problem, rest, width) if remembers else None
+                if remembers and scanned is None:
+                    scanned = scan_shape(problem, rest, limits, width)
+                width *= NARROWING
+                point = scanned or rest
+                if scanned is None and (not remembers or width < NARROWEST_SCAN):
+                    break
+            else:
+                point = moved
+        if searching and best is not start and point.squares > (1 - LANDING_GAIN) * best.squares:
+            point, landings = best, -1
+        else:
+            best, landings = point, landings - 1
+            point = landed(problem, best) if landings >= 0 else best
+    return _finished(problem, best, limits, refined)
 
 
 def _finished(problem: Problem, point: Point, limits: Array, refined: bool) -> ModelFit:

@@ -200,9 +200,9 @@ class Diagnosis:
 @dataclass(frozen=True)
 class Assumption:
     """What the robot file says may be wrong by `assumed` (a standard deviation, in the unit of `name` there), and what
-    the logs show of it: `found` of `what`, with its deviation `std` where it has one; else a `remark` says where it
-    went. `stiffness_percent` and `damping_percent`: the half of the 95 % interval that it alone would make, of the axis
-    where that is largest; None where it is counted elsewhere."""
+    the logs show of it: `found` of `what`, with its deviation `std` where it has one. `stiffness_percent` and
+    `damping_percent`: the half of the 95 % interval that it alone would make, of the axis where that is largest; None
+    where it is counted elsewhere."""
 
     name: str
     what: str
@@ -211,7 +211,6 @@ class Assumption:
     std: float | None
     stiffness_percent: float | None
     damping_percent: float | None
-    remark: str = ""
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,16 @@ PRINTED_IN = {
     "link_com": (1e3, "mm"),
     "between_recordings": (100.0, "%"),
 }
+# Where the logs show no number of its own.
+NOT_FOUND = {
+    "wrench_crosstalk": "like a bush that is elsewhere: counted in bush_position",
+    "encoder_zero": "taken up by the offset of each recording",
+    "joint_compliance": "not from logs of standing and walking",
+    "link_mass": "in how well wrench_delay is known",
+    "link_com": "in how well wrench_delay is known",
+    "total_mass": "not from the feet's forces, which it calibrates",
+    "between_recordings": "none: recordings are alike as far as they show",
+}
 SYMBOLS = {"stiffness": "K", "damping": "C"}
 KINDS = {"direct": "fitted", "cross": "unseen"}
 
@@ -146,7 +156,8 @@ def assumption_cells(rows: Sequence[Assumption]) -> list[tuple[str, ...]]:
         if not (row.assumed or row.found or row.stiffness_percent or row.damping_percent):
             continue
         factor, shown = PRINTED_IN.get(row.name, (1.0, ""))
-        found, assumed = row.remark, f"{number(factor * row.assumed, 2)} {shown}".strip()
+        found = NOT_FOUND.get(row.name, "not in these logs")
+        assumed = f"{number(factor * row.assumed, 2)} {shown}".strip()
         if row.found is not None:
             value = factor * row.found
             text = (
