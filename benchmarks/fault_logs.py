@@ -41,7 +41,7 @@ DEGREES = 180 / np.pi
 GYROSCOPE, ACCELEROMETER = imu("angular_velocity.*"), imu("linear_acceleration.*")
 ORIENTATION = imu("orientation.*")
 FORCES, TORQUES = wrench(quantity="force.*"), wrench(quantity="torque.*")
-KNEE, ANKLE_PITCH, ANKLE_ROLL = -3, -2, -1  # places in a leg, counted from the foot
+HIP_ROLL, KNEE, ANKLE_PITCH, ANKLE_ROLL = -5, -3, -2, -1  # places in a leg, counted from the foot
 
 UNIT = ("degrees", "looks? like", "N·mm", "unit")
 SIGN = ("sign", "reversed", "turns against", "pulls the standing foot")
@@ -152,6 +152,7 @@ TIMING = (
     *_delays("gyroscope", GYROSCOPE, ms=(20, 40)),
     *_delays("orientation", ORIENTATION, ms=(30,)),
     *_delays("encoders", encoders(), ms=(10, 30, 100)),
+    *_delays("ankles' encoders", encoder(place=ANKLE_PITCH), encoder(place=ANKLE_ROLL), ms=(5,)),
     *_delays("left wrench", wrench("left"), ms=(10, 30, 100)),
     *_delays("right wrench", wrench("right"), ms=(30,)),
     *_delays("wrenches", wrench(), ms=(5, 20, 40, 80, 150)),
@@ -250,6 +251,7 @@ GAINS = (
     Fault("left torque y +20 %", "gains", scaled(wrench("left", quantity=r"torque\.y"), 1.2), GAIN),
     Fault("gyroscope +10 %", "gains", scaled(GYROSCOPE, 1.1), (*GAIN, "gyroscope")),
     Fault("left knee +5 %", "gains", scaled(encoder("left", place=KNEE), 1.05), (*GAIN, "joint")),
+    Fault("hip rolls +3 %", "gains", scaled(encoder(place=HIP_ROLL), 1.03), (*GAIN, "joint")),
 )  # fmt: skip
 
 TARES = (

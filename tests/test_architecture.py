@@ -28,7 +28,7 @@ ROOMS = (
 FEET = (
     "settings", "recording", "coherent_band", "regression", "place", "fit", "interval_width", "exclusion", "assess",
     "internal_error", "prepare_log", "first_look", "prepare",
-    "foot_fit", "foot_assessment", "put_right", "shared_hysteresis",
+    "foot_fit", "foot_assessment", "put_right", "shared_hysteresis", "assumptions",
     "result", "identify", "validate", "select_motions",
 )  # fmt: skip
 # Two identifications that know nothing of one another: what both need stands in an earlier room.

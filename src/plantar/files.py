@@ -69,7 +69,8 @@ def read_bounded(
     error: type[PlantarError] = PlantarError,
     valid: str = "a smaller file",
 ) -> bytes:
-    """The file's bytes, or `error` when it is missing, unreadable or longer than `limit` bytes; `valid`: what would do."""
+    """The file's bytes, or `error` when it is missing, unreadable or longer than `limit` bytes; `valid`: what would be
+    right."""
     try:
         with open(path, "rb") as handle:
             blocks, size = [], 0

@@ -231,7 +231,7 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
         ["left", "pitch", "stiffness", "434", "± 3.5", "N.m/rad", "usable"],
         ["left", "pitch", "damping", "20", "± 7.9", "N.m.s/rad", "weak"],
     ]
-    assert [line for line in lines if "wide" in line] == ["left pitch damping: weak: wide."]
+    assert [line for line in lines if "wide" in line] == ["left pitch damping: weak: wide. Next: sway."]
     assert any("what each flag means" in line for line in lines)
     heads, rows = under(lines, "Through the log")
     assert heads == ["foot", "stands %", "pitch mrad rms", "roll mrad rms", "flags, % of the samples"]

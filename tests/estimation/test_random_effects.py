@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from plantar.estimation.random_effects import Differences, share_between
+from plantar.estimation.random_effects import Differences, resolution, share_between
 
 
 def found(true: float, own: float, groups: int = 3, draws: int = 150) -> np.ndarray:
@@ -72,3 +72,12 @@ def test_differences_that_say_nothing_leave_the_prior() -> None:
     low, high = np.interp([0.025, 0.975], below / below[-1], shares)
     assert found.low == pytest.approx(low, rel=0.1)
     assert found.high == pytest.approx(high, rel=0.1)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("apart", [0.0, 0.03])
+def test_groups_that_are_known_exactly_differ_by_what_they_do(apart: float) -> None:
+    exact = Differences(np.array([apart]), np.zeros((1, 1)))
+    found = share_between([exact], resolution([exact]))
+    assert np.isfinite(found).all()
+    assert found.share < 1e-4 if apart == 0 else apart / 3 < found.share < 2 * apart

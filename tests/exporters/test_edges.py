@@ -120,6 +120,27 @@ def test_a_slip_goes_along_where_the_target_holds_one_and_else_the_nearest_sprin
     assert sprung(*SLIPS, result={"laws": [broken]})[0].stiffness == 400.0
 
 
+def test_a_slip_becomes_that_of_the_swing_in_the_middle_of_the_identified_motions() -> None:
+    """Swings of 8, 12 and 50 mrad, whose torques have means of 2/π of their amplitudes; other axes' do not count."""
+    law = {"foot": "left", "axis": "pitch", "linear_equivalent": {"stiffness": 500.0, "damping": 30.0}}
+    scores = [
+        {"kind": kind, "foot": "left", "axis": axis, "zero_mean_abs": 500.0 * swing * 2 / np.pi}
+        for kind, axis, swing in (("direct", "pitch", 0.008), ("direct", "pitch", 0.05), ("direct", "pitch", 0.012),
+                                  ("cross", "pitch", 0.2), ("direct", "roll", 0.2))
+    ]  # fmt: skip
+    made, notes = sprung(*SLIPS, result={"laws": [law], "validation": scores})
+    chosen, _ = sprung(*SLIPS, swing=0.012)
+    assert (made.stiffness, made.damping) == pytest.approx((chosen.stiffness, chosen.damping))
+    assert notes == [
+        "left pitch: the slip is written as the spring and damper of swings of 0.012 rad at 3 rad/s, the middle of the "
+        "identified motions; for others give --swing"
+    ]
+    kept, _ = sprung(*SLIPS, result={"laws": [law], "validation": scores}, hysteresis=True)
+    assert (kept.stiffness, kept.slip) == (400.0, Slip(4.0, 0.01))
+    alone, _ = sprung(*SLIPS, result={"validation": scores})
+    assert alone.stiffness == 400.0, "no stiffness to make an angle of"
+
+
 def test_an_offset_is_the_mean_of_the_motions() -> None:
     offsets = [{"foot": "left", "axis": "pitch", "value": value} for value in (1.0, 2.0, 6.0)]
     made, notes = sprung(K, row("damping", 20.0), result={"offsets": offsets}, with_offset=True)

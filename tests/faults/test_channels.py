@@ -150,3 +150,48 @@ def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
     assert [finding.code for finding in found] == ["vertical_only"]
     broken = cells.with_columns({"wrench.left.torque.z": log.column("wrench.left.torque.z")})
     assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_channel"]
+
+
+def losing(log: MotionLog, sensor: str, length: int, every: int) -> MotionLog:
+    """The log in which a sensor repeats its last reading for `length` samples of each `every`."""
+    number = np.arange(len(log))
+    last = np.maximum.accumulate(np.where(number % every < every - length, number, 0))
+    return log.with_columns(
+        {name: values[last] for name, values in log.columns.items() if name.startswith(sensor)}
+    )
+
+
+@pytest.mark.parametrize(
+    ("length", "every", "told"),
+    [
+        (3, 20, True),
+        (5, 11, True),
+        (2, 20, False),  # a sensor a little slower than its log
+        (4, 5, False),  # a slow one
+        (3, 400, False),  # hardly any
+        (25, 200, False),  # stuck, which is told otherwise
+    ],
+)
+@pytest.mark.parametrize("sensor", ["wrench.left.", "imu.chest."])
+def test_frames_that_a_bus_loses_are_told_of_their_sensor(
+    robot: RobotModel, sensor: str, length: int, every: int, told: bool
+) -> None:
+    log = losing(noisy(record(sway()), 1), sensor, length, every)
+    found = [finding for finding in check_channels(robot, log) if finding.code == "lost_frames"]
+    assert len(found) == told
+    if told:
+        assert sensor in found[0].text
+        assert f"up to {10 * length} ms at a time, {100 * length / every:.0f} % of the log" in found[0].text
+        assert not found[0].fatal
+
+
+def test_zeros_that_a_driver_puts_in_are_no_repeated_frames(robot: RobotModel) -> None:
+    log = noisy(record(sway()), 1)
+    lost = np.arange(len(log)) % 20 > 15
+    empty = {
+        name: np.where(lost, 0.0, values)
+        for name, values in log.columns.items()
+        if name.startswith("wrench.left.")
+    }
+    codes = {finding.code for finding in check_channels(robot, log.with_columns(empty))}
+    assert "lost_frames" not in codes

@@ -32,6 +32,11 @@ def scaled(names: list[str], factor: float) -> Callable[[MotionLog], MotionLog]:
     return lambda log: log.with_columns({name: factor * log.column(name) for name in names})
 
 
+def held(log: MotionLog) -> MotionLog:
+    """An accelerometer that repeats its first reading."""
+    return log.with_columns({name: np.full(len(log), log.column(name)[0]) for name in ACCELEROMETER})
+
+
 def without(names: list[str]) -> Callable[[MotionLog], MotionLog]:
     def cut(log: MotionLog) -> MotionLog:
         return MotionLog(log.name, log.time, {k: v for k, v in log.columns.items() if k not in names})
@@ -79,6 +84,7 @@ FAULTS: dict[str, tuple[Callable[[MotionLog], MotionLog], str, bool]] = {
     "quaternions not normed": (scaled(ORIENTATION, 2.0), "quaternion_norm", True),
     "a dead gyroscope axis": (dead, "dead_channel", True),
     "a dead accelerometer": (scaled(ACCELEROMETER, 0.0), "dead_channel", False),
+    "an accelerometer that reads one value": (held, "dead_channel", False),
 }
 
 

@@ -145,7 +145,14 @@ def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
     asked: list[tuple[str, float]] = []
 
     def fitted(
-        recordings: Any, foot: str, axis: str, settings: Any, model: Any, place: PlaceSpread, timed: bool
+        recordings: Any,
+        foot: str,
+        axis: str,
+        settings: Any,
+        model: Any,
+        place: PlaceSpread,
+        timed: bool,
+        before: Any,
     ) -> Any:
         asked.append((axis, place.height))
         return SimpleNamespace(moment_arms=(0.0, 0.03 if axis == "pitch" else 0.0))
@@ -158,7 +165,7 @@ def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
     ready: Any = SimpleNamespace(
         fitted=[recording], settings=FeetSettings(), sensor_delay=SimpleNamespace(doubtful=False)
     )
-    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {})
+    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {}, {})
     assert asked == [("pitch", 0.0), ("roll", 0.0), *([] if steps else [("roll", 0.03)])]
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import TRUTH, BushModel, drawn_up, record, sway
+from biped import TRUTH, BushModel, record, sway
 from biped_robot import make_robot, robot_entry
-from feet_trials import LINEAR, noisy
+from feet_trials import LINEAR, STANDS, STEP, ZERO, noisy, stepping
 from plantar.feet.identify import identify_feet
 from plantar.feet.place.place_notes import BUSH_TURNED
 from plantar.feet.prepare_log import prepare
@@ -24,23 +24,7 @@ from plantar.signals.filters import low_pass
 from plantar.signals.resampling import evenly_sampled
 
 WRENCH = [f"wrench.left.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
-ZERO = 20.0  # N, of the left force sensor along z
-PERIOD, STANDS = 1.5, 1.0  # s, of a step and of its stance
 CLOSE = 0.1  # of K: some seconds of a small roll, with the load's moment arms beside it
-
-
-def stepping(log: MotionLog) -> MotionLog:
-    """The left foot is lifted for a third of each step; the right one carries all, and its torque is not looked at."""
-    loaded = np.mod(log.time, PERIOD) < STANDS
-    changed = {}
-    for part in ("force", "torque"):
-        for axis in "xyz":
-            left, right = (log.columns[f"wrench.{foot}.{part}.{axis}"] for foot in ("left", "right"))
-            changed[f"wrench.left.{part}.{axis}"] = np.where(loaded, left, 0.0)
-            if part == "force":
-                changed[f"wrench.right.{part}.{axis}"] = right + np.where(loaded, 0.0, left)
-    changed["wrench.left.force.z"] = changed["wrench.left.force.z"] + ZERO
-    return drawn_up(log.with_columns(changed), "left", ~loaded)
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +57,7 @@ def test_each_swing_shows_the_sensors_zero(found: FeetResult) -> None:
         assert len(rows) >= 8
         assert [row.force[2] for row in rows] == pytest.approx([ZERO] * len(rows), abs=0.5)
         assert [row.force_zero[2] for row in rows] == pytest.approx([ZERO] * len(rows), abs=0.5)
-        assert all(STANDS < np.mod(row.time, PERIOD) < PERIOD for row in rows)
+        assert all(STANDS < np.mod(row.time, STEP) < STEP for row in rows)
 
 
 def test_a_walk_is_scored_by_a_fit_of_standing_logs_that_found_the_imu_turned(robot: RobotModel) -> None:

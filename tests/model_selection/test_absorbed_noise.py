@@ -13,6 +13,7 @@ from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.data_sets import DataSet, FilteredDataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.model_fit import fit_model
 from plantar.model_selection.partialled_out import Linearised, Memory
+from plantar.model_selection.variable_projection import Problem
 from plantar.models import BushMotion, Elastoplastic
 
 RUBBER = Rubber(slip_torque=5.0, slip_angle=0.01)
@@ -131,3 +132,14 @@ def test_steps_lack_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not asked
     fit_model(Elastoplastic(), stands)
     assert asked
+
+
+def test_a_model_that_is_not_searched_takes_up_no_noise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(model_fit, "lacking", None)
+    problem = Problem(Elastoplastic(), prepared_of([1.5, 3.0], 20.0), False)
+    start = problem.at(np.array([RUBBER.slip_angle]), np.zeros(sum(problem.counts)))
+    limits = RUBBER.slip_angle * np.array([[0.5], [2.0]])
+    fit = model_fit.refine(problem, start, limits, refined=False)
+    assert fit.shape == start.shape
+    with pytest.raises(TypeError):
+        model_fit.refine(problem, start, limits)

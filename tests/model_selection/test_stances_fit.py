@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scipy.optimize import brentq
 
 from plantar.model_selection import model_fit
 from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
+from plantar.model_selection.grid import Pieces
 from plantar.model_selection.model_fit import fit_again, fit_model
 from plantar.model_selection.selection import choose_model
 from plantar.models import MODELS, BushMotion
@@ -141,3 +143,25 @@ def test_a_fit_that_had_come_to_rest_looks_for_no_other_landings(monkeypatch: py
     assert 0 < searched <= model_fit.LANDINGS
     fit_again(before, sets)
     assert len(asked) == searched
+
+
+def test_a_choice_goes_on_from_the_one_with_a_few_samples_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its landings and its memory are known: the fit is that of a choice from nothing, and what to search is less."""
+    models = [MODELS["kelvin_voigt"], MODELS["elastoplastic"]]
+    sets = [walk(f"walk_{seed}", seed)[0] for seed in (1, 2, 3)]
+    before = choose_model(sets, models)
+    fewer = [replace(one, used=one.used & (np.arange(len(one.used)) % 1000 > 20)) for one in sets]
+    anew = choose_model(fewer, models)
+    tried: list[int] = []
+    of = Pieces.of.__func__  # type: ignore[attr-defined]
+
+    def counted(cls: type[Pieces], *given: Any, **more: Any) -> Pieces:
+        tried.append(len(given[3]))
+        return of(cls, *given, **more)
+
+    monkeypatch.setattr(model_fit, "landed", None)
+    monkeypatch.setattr(Pieces, "of", classmethod(counted))
+    after = choose_model(fewer, models, before=before)
+    assert after.fit.model.name == "elastoplastic"
+    np.testing.assert_allclose(after.fit.values, anew.fit.values, rtol=2e-3)
+    assert max(tried) < len(models[1].candidates([one.motion for one in sets]))

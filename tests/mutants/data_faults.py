@@ -42,8 +42,32 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/play.py", "encoders that are late have play",
-        "if late.squares < play.squares:", "if late.squares < 0.0:",
+        "if late.squares < play.squares or", "if late.squares < 0.0 or",
         ("feet/assess/test_play.py",),
+    ),
+    Mutant(
+        "feet/assess/play.py", "play that moves no number is told",
+        " or wide.holds(play.values[:2] - found.values[:2])", "",
+        ("feet/assess/test_play.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "a joint that is late is early",
+        "'late' if self.size > 0", "'late' if self.size < 0",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "a joint that moves no number is told",
+        "not wide.holds(fit.values[:2] - usual[:2])", "True",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "any joint that explains a little is misread",
+        "alone.squares < BETTER * found[0].squares", "alone.squares < 0.0",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
+        "faults/channels.py", "slow sensors lose frames", "again < 0.5 and longest", "longest",
+        ("faults/test_channels.py",),
     ),
     Mutant(
         "feet/prepare_log.py", "an attitude is put right once", "TILT_ROUNDS = 3", "TILT_ROUNDS = 1",
@@ -224,7 +248,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/sensor_hysteresis.py", "hysteresis that moves nothing is told",
-        "abs(moved) < NORMAL95 * float(wide.std[RATE])", "False", ("feet/assess/test_sensor_hysteresis.py",),
+        "abs(moved) < PART * NORMAL95 * float(wide.std[RATE])", "False", ("feet/assess/test_sensor_hysteresis.py",),
     ),
     Mutant(
         "feet/interval_width/joint_compliance.py", "joints bend half as much", "bent)[:size], compliance)",

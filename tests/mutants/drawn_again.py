@@ -39,7 +39,7 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/random_effects.py", "the prior of shares without its heavy tail",
-        "-0.5 * (HEAVY + 1) * np.log1p((TRIED / usual) ** 2 / HEAVY)", "-0.5 * (TRIED / usual) ** 2",
+        "-0.5 * (HEAVY + 1) * np.log1p((TRIED / max(usual, LEAST)) ** 2 / HEAVY)", "-0.5 * (TRIED / usual) ** 2",
     ),
     Mutant(
         "estimation/random_effects.py", "the first group differs by nothing",

@@ -66,6 +66,7 @@ def test_a_result_comes_back_from_its_file_to_the_byte(result: FeetResult, tmp_p
         assert again.models == one.models
         assert any(model.ranking for model in again.models), "this test would prove nothing"
         assert (again.sensor_delay, again.diagnosis) == (one.sensor_delay, one.diagnosis)
+        assert again.assumptions == one.assumptions
         assert (again.parameters, again.comparisons) == (one.parameters, one.comparisons)
         assert again.residuals is not None
         assert again.residuals.num_rows == one.residuals.num_rows
@@ -76,6 +77,7 @@ def test_the_file_has_the_contracts_keys_in_their_order(result: FeetResult) -> N
     keys = [
         "schema", "robot", "plantar", "created", "inputs", "settings", "model", "parameters", "offsets", "phases",
         "validation", "notes", "robot_model", "laws", "latency", "compliance", "diagnosis",
+        "assumptions",
     ]  # fmt: skip
     content = result.to_dict()
     assert list(content) == keys

@@ -86,6 +86,7 @@ def test_encoders_that_are_read_late_move_what_the_feet_read_too() -> None:
     twin, late = hrp2.robot(), 0.002
     squat = checked(twin, play_all(["Squat"], twin, PAPER, "ideal", [0])[0][0].log)
     (before,) = newton_euler_residuals(twin, squat)
+    assert before.pair.model_errors.shape == (48, *before.pair.predicted.shape), "every drawn URDF takes part"
     (after,) = newton_euler_residuals(twin, read_in_time(twin, squat, np.array([0.0, 0.0, late])))
     count = min(len(before.by_encoders), len(after.by_encoders))
     missing = [(one.pair.predicted - one.measured.sum(axis=0))[:count] for one in (before, after)]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from biped import TRUTH, BushModel
+from biped import TRUTH, BushModel, drawn_up
 from biped_robot import FEET
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -18,6 +18,8 @@ PUNCTUAL = FeetSettings(wrench_delay=0.0)
 # Where a test does not ask which model is chosen: none is, which halves what a fit costs.
 LINEAR = FeetSettings(wrench_delay=0.0, model="kelvin_voigt")
 
+ZERO = 20.0  # N, of the left force sensor along z where that foot steps
+STEP, STANDS = 1.5, 1.0  # s, of a step and of its stance
 EXACT = 1e-4  # what differences of the joints' positions cost
 Truth = Mapping[tuple[str, str], BushModel]
 AXES = ("pitch", "roll")
@@ -63,3 +65,17 @@ def noisy(log: MotionLog, seed: int) -> MotionLog:
         return values + random.normal(0, next(s for part, s in size.items() if part in name), len(values))
 
     return log.with_columns({name: spoiled(name, values) for name, values in log.columns.items()})
+
+
+def stepping(log: MotionLog) -> MotionLog:
+    """The left foot is lifted for a third of each step; the right one carries all, and its torque is not looked at."""
+    loaded = np.mod(log.time, STEP) < STANDS
+    changed = {}
+    for part in ("force", "torque"):
+        for axis in "xyz":
+            left, right = (log.columns[f"wrench.{foot}.{part}.{axis}"] for foot in ("left", "right"))
+            changed[f"wrench.left.{part}.{axis}"] = np.where(loaded, left, 0.0)
+            if part == "force":
+                changed[f"wrench.right.{part}.{axis}"] = right + np.where(loaded, 0.0, left)
+    changed["wrench.left.force.z"] = changed["wrench.left.force.z"] + ZERO
+    return drawn_up(log.with_columns(changed), "left", ~loaded)

@@ -11,6 +11,7 @@ from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
 from plantar.cli.identify.feet_tables import advised
 from plantar.errors import PlantarError
 from plantar.results.feet import FeetResult
+from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
 from plantar.results.io import dump_json
 from plantar.results.usage import used_shares
 
@@ -32,6 +33,7 @@ def run(
                 {
                     "schema": "plantar.diagnosis/1",
                     "diagnosis": rows,
+                    "assumptions": [asdict(row) for row in found.assumptions],
                     "served": [share.to_dict() for share in used],
                 }
             ),
@@ -56,6 +58,8 @@ def run(
         screen.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
+    if allowed := assumption_cells(found.assumptions):
+        screen.print(table("\nWhat the robot file may be wrong about", ASSUMPTION_HEADS, allowed))
     shares = [(one.motion, one.foot, f"{one.seconds:.1f}", f"{one.used:.1f}", one.reasons) for one in used]
     screen.print(
         table(

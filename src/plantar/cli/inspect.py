@@ -24,6 +24,7 @@ from plantar.cli.console.terminal import (
 from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
 from plantar.notes import Note
+from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
@@ -101,6 +102,8 @@ def _print(out: Console, log: LogSummary, columns: bool, weighs: str) -> None:
         ]
         styles = [VERDICT_STYLE[p.verdict] for p in log.parameters]
         out.print(table("What this log identifies by itself", heads, rows, styles))
+    if allowed := assumption_cells(log.assumptions):
+        out.print(table("What the robot file may be wrong about", ASSUMPTION_HEADS, allowed))
     if columns:
         ranges = [(c.name, number(c.least), number(c.largest), str(c.missing)) for c in log.columns]
         out.print(table("Columns", ("column", "least", "largest", "missing"), ranges))

@@ -46,8 +46,8 @@ REFRESH = 0.1  # s between two tables
 KINDS: Sequence[Format] = ("png", "svg", "pdf")
 LONGEST_WAIT = 120.0  # s for a browser to open the page
 DELAY_HELP = (
-    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: the result's; without a "
-    "result 0, and the damping's interval is wide enough for what the robot file allows."
+    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: the result's; "
+    "without a result 0, and the damping's interval is wide enough for what the robot file allows."
 )
 RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, places, delay and cutoff are used."
 

@@ -9,7 +9,9 @@ import numpy as np
 
 from plantar.conventions import Array
 
-TRIED = np.geomspace(1e-5, 0.2, 200)  # shares by which groups may differ
+# Share: who differs by less does not differ, and nothing is known better, not even without noise.
+LEAST = 1e-5
+TRIED = np.geomspace(LEAST, 0.2, 200)  # shares by which groups may differ
 HEAVY = 3.0  # degrees of freedom of the prior's tail: groups that differ by far more than it are believed
 
 
@@ -35,7 +37,7 @@ def resolution(sets: Sequence[Differences]) -> float:
     believed by half (W. DuMouchel, NISS Technical Report 27, 1994).
     """
     variances = np.concatenate([np.diag(each.covariance) for each in sets])
-    return float(1 / np.sqrt(np.mean(1 / variances)))
+    return float(1 / np.sqrt(np.mean(1 / np.maximum(variances, LEAST**2))))
 
 
 def share_between(sets: Sequence[Differences], usual: float) -> ShareBetween:
@@ -45,7 +47,7 @@ def share_between(sets: Sequence[Differences], usual: float) -> ShareBetween:
     leave (A. Gelman, Bayesian Analysis 1, 2006). So few differences may be small by chance, which a moment estimate
     takes for none at all.
     """
-    prior = -0.5 * (HEAVY + 1) * np.log1p((TRIED / usual) ** 2 / HEAVY)
+    prior = -0.5 * (HEAVY + 1) * np.log1p((TRIED / max(usual, LEAST)) ** 2 / HEAVY)
     # Tried in even steps of the logarithm.
     logarithm = prior + np.log(TRIED) + sum(_likelihood(each) for each in sets)
     weight = np.exp(logarithm - logarithm.max())

@@ -71,7 +71,7 @@ def export(
             SDFormat too); the result's own URDF where left out, for USD a layer to reference.
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
         swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
-            slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
+            slip becomes their spring and damper. Where left out, it is the middle of the identified motions'.
         hysteresis: for mujoco-contact: leave to `plantar.FootHysteresis` in the simulation's loop what points cannot
             be: rubber that slips, feet that tip. Joints of mjcf hold it anyway.
         pivot: for mujoco-contact: what the foot turns about, "ground" or "bush": the bush's centre, as the robot's feet

@@ -98,8 +98,8 @@ def feet_of_result(
 ) -> tuple[tuple[FootBush, ...], tuple[Note, ...]]:
     """Every foot of a plantar.feet/1 result, and notes on what no target will hold.
 
-    With `hysteresis`, for a target that holds one, an elastoplastic axis keeps it; else it becomes the nearest spring
-    and damper.
+    With `hysteresis`, for a target that holds one, an elastoplastic axis keeps it; else its slip becomes spring
+    and damper (`spring_of`).
 
     Raises ExportError: no foot, a foot without stiffness, a stiffness that is not positive, no geometry.
     """

@@ -86,7 +86,8 @@ def spring_of(
     """The spring of one axis, or None where it is rigid; `notes` gets what nobody should miss.
 
     hysteresis: whether the target can hold an element that slips. swing: amplitude [rad] at which a slip that the
-    target cannot hold becomes spring and damper; else the nearest ones of the identified motions.
+    target cannot hold becomes spring and damper; None: the middle of the identified motions', or where a result does
+    not have these the spring and damper nearest to all of them.
 
     Raises ExportError where the stiffness is not positive or a number is none.
     """
@@ -101,16 +102,18 @@ def spring_of(
         message = f"{where}: the stiffness is not positive; no simulator can stand on it"
         raise ExportError(message, value=stiffness, valid="a result whose stiffness is usable")
     extra = [name for name in values if name not in KNOWN_TERMS]
-    slip = swung = None
+    slip = swung = at = None
     if set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
         element = Slip(*(values[name] for name in SLIP_TERMS))
         if hysteresis:
             slip, extra = element, []
-        elif swing is not None:
+        elif (at := swing or _usual_swing(result, foot, axis)) is not None:
             swung = element
     nearest = _linear_equivalent(result, foot, axis) if extra and swung is None else None
     if swung is not None:
-        text = f"{where}: the slip is written as the spring and damper of swings of {swing:g} rad at {SWAY:g} rad/s"
+        text = f"{where}: the slip is written as the spring and damper of swings of {at:.3g} rad at {SWAY:g} rad/s"
+        if not swing:
+            text += ", the middle of the identified motions; for others give --swing"
         notes.warning("export_swing", text)
     elif extra:
         text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
@@ -123,9 +126,9 @@ def spring_of(
         _doubt(mine.get("damping", {}), where, notes)
     else:
         damping, assumed = _damping(mine.get("damping", {}), stiffness, where, notes)
-    if swung is not None and swing is not None:
-        stiffness += swung.stiffness_at(swing)
-        damping += swung.damping_at(swing)
+    if swung is not None and at is not None:
+        stiffness += swung.stiffness_at(at)
+        damping += swung.damping_at(at)
     offsets = [
         _number(row.get("value"), f"{where} offset")
         for row in (*result.get("offsets", ()), *(row for name, row in mine.items() if name == "offset"))
@@ -198,6 +201,25 @@ def _linear_equivalent(result: Mapping[str, Any], foot: str, axis: Axis) -> tupl
             if 0 < stiffness < math.inf and 0 < damping < math.inf:
                 return stiffness, damping
     return None
+
+
+def _usual_swing(result: Mapping[str, Any], foot: str, axis: Axis) -> float | None:
+    """The amplitude in the middle of the identified motions [rad]; None where their scores do not show it.
+
+    The nearest spring and damper to all motions are ruled by the largest, which may be an operator's pushes. A swing of
+    amplitude a has a mean of 2·a/π: that of its torque is what the offset alone misses by.
+    """
+    nearest = _linear_equivalent(result, foot, axis)
+    torques = [
+        float(row["zero_mean_abs"])
+        for row in result.get("validation", ())
+        if (row.get("kind"), row.get("foot"), row.get("axis")) == ("direct", foot, axis)
+        and isinstance(row.get("zero_mean_abs"), int | float)
+    ]
+    if nearest is None or not torques:
+        return None
+    swing = math.pi / 2 * float(np.median(torques)) / nearest[0]
+    return swing if 0 < swing < 1 else None
 
 
 def _number(value: object, what: str) -> float:

@@ -11,7 +11,7 @@ from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
-from plantar.signals.held import FEWEST, SHORTEST, can_be_held, held_in
+from plantar.signals.held import FEWEST, SHORTEST, can_be_held, coarse, held_in
 from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import longest_run, runs
 
@@ -19,14 +19,17 @@ TURNED = 0.02  # rad by which a joint moves, whose position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
+# Repeated in a row: fewer a sensor does that is a little slower than the log. Share of the log that is worth a word.
+BURST, LOST = 3, 0.01
 JUMPS = 5.0  # usual steps, of most channels behind a standstill: motions begin slowly, a logger that froze missed many
 
 
 def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """Columns of the IMU and of the wrenches that stand at one value for a while, joints that do while they turn.
 
-    Columns of one sensor that stop together are one finding. Encoders read in steps: of one that stands for a while
-    nothing can be said. Where nothing at all changes, a simulated robot without noise is at rest.
+    Columns of one sensor that stop together are one finding, and so are its frames that are lost again and again.
+    Encoders read in steps: of one that stands for a while nothing can be said. Where nothing at all changes, a
+    simulated robot without noise is at rest.
     """
     if robot.imu is None:
         return
@@ -43,6 +46,7 @@ def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()),
     ):
         yield from _stuck(sensor, log, rest)
+        yield from _lost_frames(sensor, log, rest)
 
 
 def loaded_path(robot: RobotModel, log: MotionLog) -> frozenset[str]:
@@ -184,3 +188,26 @@ def _stuck(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
         )
         text = f"{named(stopped, sensor, len(columns))}, {when}{value}: {still} elsewhere, {share}; {asked}"
         yield Finding("stuck_channel", f"{text} (valid: leave such cells empty)")
+
+
+def _lost_frames(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
+    """A finding where all columns of a sensor repeat for some samples again and again, between others that are new.
+
+    A sensor that is slower than its log repeats every reading, in longer stretches it is stuck, and zeros were put in.
+    """
+    columns = [column for column in log.columns if column.startswith(sensor) and can_be_held(column)]
+    if not columns or all(coarse(log.column(column)) for column in columns):
+        return
+    read = log.stack(columns)
+    still = (np.diff(read, axis=0) == 0).all(axis=1) & read[1:].any(axis=1) & ~rest[1:]
+    again = np.mean(still[1:][~still[:-1]]) if not still[:-1].all() else 1.0
+    bursts = [run for run in runs(still) if (run.stop - run.start) * log.period < SHORTEST]
+    lost = sum(run.stop - run.start for run in bursts)
+    longest = max((run.stop - run.start for run in bursts), default=0)
+    if again < 0.5 and longest >= BURST and lost > LOST * len(log):
+        text = (
+            f"{named(columns, sensor, len(columns))}: repeat their last values again and again, up to "
+            f"{1e3 * longest * log.period:.0f} ms at a time, {100 * lost / len(log):.0f} % of the log; does a bus lose "
+            "frames? Delays and damping are less sure (valid: leave such cells empty)"
+        )
+        yield Finding("lost_frames", text)

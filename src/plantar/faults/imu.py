@@ -46,8 +46,7 @@ def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
 
 
 def _dead_channels(log: MotionLog, columns: Sequence[str], orientation: Array | None) -> Iterator[Finding]:
-    whole = orientation[complete(orientation)] if orientation is not None else np.zeros((0, 4))
-    moves = len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
+    moves = _moves(orientation)
     for column in columns:
         values = log.column(column)
         finite = values[np.isfinite(values)]
@@ -55,11 +54,22 @@ def _dead_channels(log: MotionLog, columns: Sequence[str], orientation: Array | 
             yield Finding("dead_channel", f"column '{column}': never changes; is the channel dead?", True)
 
 
+def _moves(orientation: Array | None) -> bool:
+    """Whether the IMU surely turns."""
+    whole = orientation[complete(orientation)] if orientation is not None else np.zeros((0, 4))
+    return len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
+
+
 def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
-    """Whether the accelerometer's usual norm is gravity's."""
-    norm = np.linalg.norm(log.linear_acceleration(name), axis=1)
+    """Whether the accelerometer's usual norm is gravity's, and its reading no constant beside an IMU that turns."""
+    acceleration = log.linear_acceleration(name)
+    norm = np.linalg.norm(acceleration, axis=1)
     where = f"columns 'imu.{name}.linear_acceleration.*'"
     valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
+    known = acceleration[np.isfinite(norm)]
+    if known.any() and _moves(log.orientation(name)) and not np.ptp(known, axis=0).any():
+        text = f"{where}: never change; is the sensor dead? (valid: leave the columns out)"
+        return Finding("dead_channel", text)
     if not np.isfinite(norm).any() or np.nanmax(norm) == 0:
         return Finding("dead_channel", f"{where}: hold no value ({valid})", log.orientation(name) is None)
     size = float(np.nanmedian(norm))

@@ -30,6 +30,7 @@ from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.far_arms import far_arms
+from plantar.feet.place.misread_joints import misread_joint_notes
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.notes import Note
@@ -99,12 +100,13 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     walks = walk_stiffness(ready.recordings, wide)
     own = [
-        *play_notes(thin.fitted, fit, blocks, shared),
-        *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
+        *play_notes(thin.fitted, wide, blocks, shared),
+        *encoder_play_notes(ready.fitted, wide, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, wide, blocks, shared),
+        *misread_joint_notes(ready.robot, ready.fitted, wide, blocks),
         *late_recordings(wide, blocks, shared),
         *odd_recordings(wide, blocks, shared),
-        *odd_walks(wide, walks),
+        *odd_walks(wide, walks, thin.fitted, blocks),
     ]
     faults = [
         *data_faults(ready.fitted, fit),

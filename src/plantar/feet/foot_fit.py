@@ -56,14 +56,14 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
     """
     given_up: dict[Axis, str] = {}
     thin = _thin(ready, foot)
-    fits = _fits(thin, foot, place, given_up)
+    fits = _fits(thin, foot, place, {}, given_up)
     for _ in range(ROUNDS):
         masks = _outliers(ready, fits, given_up)
         if not any(masks.values()):
             break
         ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
         thin = _thin(ready, foot)
-        fits = _fits(thin, foot, place, given_up)
+        fits = _fits(thin, foot, place, fits, given_up)
     shared = ready.settings.offset == "shared"
     with gives_up("pitch", given_up):
         if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
@@ -136,8 +136,13 @@ def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
 
 
 def _fits(
-    ready: PreparedLogs, foot: str, place: PlaceSpread, given_up: dict[Axis, str]
+    ready: PreparedLogs,
+    foot: str,
+    place: PlaceSpread,
+    before: Mapping[Axis, AxisFit],
+    given_up: dict[Axis, str],
 ) -> dict[Axis, AxisFit]:
+    """Both axes' fits, from where those `before` came to rest."""
     found: dict[Axis, AxisFit] = {}
     timed = not ready.sensor_delay.doubtful
     steps = any(recording.stances[foot] is not None for recording in ready.fitted)
@@ -148,7 +153,16 @@ def _fits(
             lambda axis, own: (
                 why := dict[Axis, str](),
                 gives_up(axis, why)(
-                    lambda: fit_axis(ready.fitted, foot, axis, ready.settings, None, own, timed)
+                    lambda: fit_axis(
+                        ready.fitted,
+                        foot,
+                        axis,
+                        ready.settings,
+                        None,
+                        own,
+                        timed,
+                        found.get(axis, before.get(axis)),
+                    )
                 )(),
             ),
             left,

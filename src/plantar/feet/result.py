@@ -13,6 +13,7 @@ from plantar.conventions import OFFSET_UNIT
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
+from plantar.feet.assumptions import assumptions
 from plantar.feet.foot_assessment import FootFit
 from plantar.feet.interval_width.between_recordings import Apart, apart_notes
 from plantar.feet.place.far_arms import far_arms
@@ -71,6 +72,7 @@ def feet_result(
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
         diagnosis=tuple(limits),
+        assumptions=assumptions(ready, found, between),
         stances=tuple(row for each in found for row in each.stances),
         walks=tuple(row for each in found for row in each.walks),
         swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),

@@ -20,7 +20,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
-from plantar.results.feet import Parameter
+from plantar.results.feet import Assumption, Parameter
 from plantar.results.io import finite
 from plantar.robot.guesses import guess_notes
 from plantar.robot.model import RobotModel
@@ -65,6 +65,7 @@ class LogSummary:
     parameters: tuple[Parameter, ...]
     findings: tuple[Finding, ...]
     notes: tuple[Note, ...]
+    assumptions: tuple[Assumption, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         plain: dict[str, Any] = finite(asdict(self))
@@ -76,6 +77,7 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
     findings = []
     feet: tuple[FootSummary, ...] = ()
     parameters: tuple[Parameter, ...] = ()
+    assumptions: tuple[Assumption, ...] = ()
     notes = (
         *guess_notes(robot.path.name, robot.guesses),
         *robot.weight_notes,
@@ -94,7 +96,7 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
             )
             feet = tuple(_foot(ready.fitted[0], foot) for foot in robot.feet)
             result = fit_prepared(robot, ready)
-            parameters, notes = result.parameters, result.notes
+            parameters, notes, assumptions = result.parameters, result.notes, result.assumptions
     except PlantarError as error:
         findings.append(Finding("not_usable", str(error), True))
     return LogSummary(
@@ -109,6 +111,7 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
         parameters=parameters,
         findings=tuple(findings),
         notes=notes,
+        assumptions=assumptions,
     )
 
 

@@ -40,9 +40,9 @@ def lacking(linear: Linearised, drifts: Sequence[Array], durations: Sequence[flo
     slow = [part.walked(own) for part, own in zip(parts, columns, strict=True)]
     solved, together = linear.inverse(), sum(own.T @ own for own in slow)
     real, shown = np.zeros(count), np.zeros(count)
-    influences, nuisances = linear.influences(), linear.nuisances()
+    nuisances = linear.nuisances()
     for place, (drift, part) in enumerate(zip(drifts, parts, strict=True)):
-        influence = influences[place][:, :count]
+        influence = columns[place] @ solved[:, :count]
         cosines = part.cosines(cosine_count(durations[place]))
         of_rows = part.spread(cosines)
         forgotten = nuisances[place]

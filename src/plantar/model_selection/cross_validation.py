@@ -52,11 +52,12 @@ class Candidate:
         shared_offset: bool,
         seed: ModelFit | None = None,
     ) -> Candidate:
-        """`seed`: the fit of a simpler model; this one's first nonlinear parameter and initial states are near its."""
+        """`seed`: an earlier fit, or that of a simpler model; this one's first nonlinear parameter and initial states
+        are near its."""
         shapes = model.candidates([each.motion for each in prepared])
         limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
         initial_states = None
-        if seed is not None:
+        if seed is not None and len(seed.shape):
             ratio = np.abs(np.log(shapes[:, 0] / seed.shape[0]))
             shapes = shapes[ratio <= max(np.log(SEED_REACH), ratio.min())]
             initial_states = list(seed.initial_states.values())

@@ -45,8 +45,9 @@ class StepColumns:
         place: (n,), the number of each row's stance, in order.
         """
         count = np.bincount(place)
-        means = np.add.reduceat(rows, np.cumsum(count) - count) / count[:, None]
-        return np.asarray(rows - self.share * np.repeat(means - rows.mean(axis=0), count, axis=0))
+        sums = np.add.reduceat(rows, np.cumsum(count) - count)
+        apart = sums / count[:, None] - sums.sum(axis=0) / len(rows)
+        return np.asarray(rows - np.repeat(self.share * apart, count, axis=0))
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,8 @@ from plantar.model_selection.grid import Pieces, fit_all
 from plantar.model_selection.partialled_out import robust_covariance
 from plantar.model_selection.variable_projection import (
     ITERATIONS,
+    LANDING_GAIN,
+    LANDING_ITERATIONS,
     LANDINGS,
     NARROWEST_SCAN,
     NARROWING,
@@ -131,8 +133,13 @@ def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
     """The fit of the same recordings with other torques, from where it came to rest before."""
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
-    states = np.concatenate([before.initial_states[each.label] for each in prepared])
-    return refine(problem, problem.at(before.shape, states), before.limits, rested=True)
+    return refine(problem, where_it_rested(problem, before), before.limits, rested=True)
+
+
+def where_it_rested(problem: Problem, before: ModelFit) -> Point:
+    """The point of an earlier fit of the same recordings."""
+    states = [before.initial_states[each.label] for each in problem.prepared]
+    return problem.at(before.shape, np.concatenate(states))
 
 
 def refine(
@@ -140,17 +147,17 @@ def refine(
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
-    Where the foot steps, a search begins again from the states that the air leaves for each landing, up to LANDINGS
-    times and as long as that helps. One that had come to rest (`rested`) with other torques looks about it for corners
-    only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong.
+    Where the foot steps, they go from the best of the states that the air leaves for each landing. A fit that had come
+    to rest (`rested`) with other torques keeps its landings and looks about it for corners only nearby. Not `refined`,
+    it stays at the start: enough to see that a model is wrong, as are deviations without what a fit takes up of noise.
     """
-    remembers = problem.model.remembers
-    iterations = ITERATIONS if refined and (len(start.shape) or remembers) else 0
-    best, point = start, start
-    landings = 0 if rested or not iterations else LANDINGS
-    for search in range(1 + landings):
+    remembers, best, point = problem.model.remembers, start, start
+    landings = LANDINGS if problem.lands and not rested else -1
+    searching = refined and bool(len(start.shape) or remembers)
+    while searching:
+        searching = landings >= 0  # the last one is the whole search
         width = WIDEST_SCAN * (NARROWING if rested else 1.0)
-        for _ in range(iterations):
+        for _ in range(LANDING_ITERATIONS if searching else ITERATIONS):
             moved = step(problem, point, limits)
             if moved is None or moved.squares > (1 - SETTLED) * point.squares:
                 rest = moved or point
@@ -158,28 +165,27 @@ def refine(
                 if remembers and scanned is None:
                     scanned = scan_shape(problem, rest, limits, width)
                 width *= NARROWING
+                point = scanned or rest
                 if scanned is None and (not remembers or width < NARROWEST_SCAN):
-                    point = moved or point
                     break
-                moved = scanned or moved or point
-            point = moved
-        if search and point.squares > (1 - SETTLED) * best.squares:
-            break
-        best, again = point, landed(problem, point) if search < landings else None
-        if again is None:
-            break
-        point = again
-    return _finished(problem, best, limits)
+            else:
+                point = moved
+        if searching and best is not start and point.squares > (1 - LANDING_GAIN) * best.squares:
+            point, landings = best, -1
+        else:
+            best, landings = point, landings - 1
+            point = landed(problem, best) if landings >= 0 else best
+    return _finished(problem, best, limits, refined)
 
 
-def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
+def _finished(problem: Problem, point: Point, limits: Array, refined: bool) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
     residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
     durations = [each.duration for each in problem.prepared]
     covariance, freedom = robust_covariance(linear, residuals, durations)
     lacks = np.ones(linear.size)
-    if all(each.steps is None for each in problem.prepared):
+    if refined and all(each.steps is None for each in problem.prepared):
         lacks = lacking(linear, [each.drift for each in problem.prepared], durations)
     wide = np.concatenate([lacks * scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]

@@ -18,7 +18,7 @@ from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.model_selection.cross_validation import FOLDS, Candidate, cross_validate, folds_of
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
-from plantar.model_selection.model_fit import ModelFit, refine
+from plantar.model_selection.model_fit import ModelFit, refine, where_it_rested
 from plantar.model_selection.variable_projection import Problem, best_candidate
 from plantar.models import MODELS, BushModel, KelvinVoigt, reach
 
@@ -73,10 +73,12 @@ def choose_model(
     *,
     shared_offset: bool = False,
     least_gain: float = LEAST_GAIN,
+    before: ModelChoice | None = None,
 ) -> ModelChoice:
     """Fit every model, hold pieces out in turn, and choose. Models must include Kelvin-Voigt.
 
-    Whole recordings are held out where there are at least three and none has more than half of the motion;
+    `before`: the choice for the same recordings with a few samples more; a fit goes on from there where no candidate is
+    better. Whole recordings are held out where there are at least three and none has more than half of the motion;
     else contiguous fifths of every recording. Raises DataError where no sample can be used.
     """
     prepared = prepare_data_sets(data_sets, cutoff, drift=not shared_offset)
@@ -89,9 +91,10 @@ def choose_model(
     motions = [each.motion for each in prepared]
     applicable = [model for model in models if model.applies(motions)]
     untried = [model.name for model in models if model not in applicable]
+    earlier = {} if before is None else {score.model.name: score.fit for score in before.ranking}
     simple = sorted(
         (
-            Candidate.of(model, prepared, folds, shared_offset)
+            Candidate.of(model, prepared, folds, shared_offset, earlier.get(model.name))
             for model in applicable
             if model.elaborates is None
         ),
@@ -122,8 +125,12 @@ def choose_model(
             most = min(most, (1 - TELLING_GAIN) ** 2 * simple[linear].squares)
         refined = not candidate.squares > most
         problem = Problem(candidate.pieces.model, prepared, shared_offset)
-        start = best_candidate(problem, candidate.pieces, candidate.fits)
-        fit = refine(problem, start, candidate.limits, refined=refined)
+        start, rested = best_candidate(problem, candidate.pieces, candidate.fits), False
+        if refined and (known := earlier.get(problem.model.name)) is not None:
+            again = where_it_rested(problem, known)
+            rested = again.squares < start.squares
+            start = again if rested else start
+        fit = refine(problem, start, candidate.limits, refined=refined, rested=rested)
         if simpler is not None and not _adds(fit, simpler):
             untried.append(fit.model.name)
             continue

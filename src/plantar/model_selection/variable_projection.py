@@ -21,6 +21,9 @@ from plantar.models import BushModel
 
 ITERATIONS = 16  # at most, of a refinement
 LANDINGS = 3  # times that the states at landings are found anew with better parameters
+# Between these: it settles parameters and offsets, on which landings depend.
+LANDING_ITERATIONS = 4
+LANDING_GAIN = 0.01  # relative fall of the squares below which other landings gain nothing
 WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
     1.0,
     0.05,
@@ -88,6 +91,11 @@ class Problem:
             [first + each.run_of for first, each in zip(firsts, self.prepared, strict=True)]
         )
 
+    @cached_property
+    def lands(self) -> bool:
+        """Whether a memory begins anew with every step of the foot."""
+        return STATE in self.model.terms and all(each.steps is not None for each in self.prepared)
+
     def by_recording(self, states: Array) -> list[Array]:
         """Initial states (..., runs) of each recording."""
         return np.split(states, np.cumsum(self.counts[:-1]), axis=-1)
@@ -141,14 +149,12 @@ def best_candidate(problem: Problem, pieces: Pieces, rough: Fits) -> Point:
     return problem.at(pieces.shapes[best], begin)
 
 
-def landed(problem: Problem, point: Point) -> Point | None:
-    """The point with the states that the air leaves for each landing; None for a foot that does not step.
+def landed(problem: Problem, point: Point) -> Point:
+    """The point with the states that the air leaves for each landing, of a foot that steps.
 
     What the states of all stances have in common hardly shows in any one of them: from a wrong guess no step by step
     search finds it.
     """
-    if STATE not in problem.model.terms or any(each.steps is None for each in problem.prepared):
-        return None
     states = []
     begins = problem.by_recording(point.initial_states)
     for each, begin, offset in zip(problem.prepared, begins, point.offsets, strict=True):

@@ -52,7 +52,7 @@ class Replay:
     def stands(self, foot: str) -> Mask:
         """Where the foot is known to stand, (N,): a reading that is missing leaves its contact as it was."""
         away = self.column(foot, "flags").astype(int) & Flag.NOT_STANDING
-        return (self.column(foot, "contact") == Contact.STANCE) & (away == 0)
+        return np.asarray((self.column(foot, "contact") == Contact.STANCE) & (away == 0))
 
     def estimate(self, foot: str, sample: int = -1) -> FootEstimate:
         """A foot's estimate at a sample; the last one if left out."""

@@ -13,7 +13,10 @@ from plantar.online.replay import IDENTIFY
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 
-UNTOLD = "without a batch result: a robot file that is wrong does not show here, a memory of the rubber in large motions only"
+UNTOLD = (
+    "without a batch result: a robot file that is wrong does not show here, a memory of the rubber in large motions "
+    "only"
+)
 
 
 def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:

@@ -113,6 +113,7 @@ def _tables(result: FeetResult) -> list[Table]:
         tables.validation_table(result.validation, kind) for kind in ("direct", "cross") if kind in kinds
     ]
     made += tables.comparison_tables(result)
+    made += [tables.assumption_table(result.assumptions)] if result.assumptions else []
     made += [tables.offset_table(result.offsets)] if result.offsets else []
     made += [tables.used_table(result.phases)] if result.phases else []
     made.append(tables.neighbour_table(result.parameters))

@@ -11,8 +11,9 @@ from plantar.contact.phases import Phase
 from plantar.conventions import NORMAL95
 from plantar.report.content import Cell, Column, Mark, Table
 from plantar.report.verdict import MARKS, symbol
+from plantar.results import feet_text
 from plantar.results.dynamics import DynamicsScore, JointParameter
-from plantar.results.feet import Comparison, FeetResult, Input, Offset, Parameter, ValidationRow
+from plantar.results.feet import Assumption, Comparison, FeetResult, Input, Offset, Parameter, ValidationRow
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 from plantar.results.reference import neighbours
 from plantar.results.usage import used_shares
@@ -66,6 +67,18 @@ def neighbour_table(parameters: Sequence[Parameter]) -> Table:
         "Most were configured and never measured: they show a likely size, no more. 1e8 stands for rigid."
     )
     return Table.of("Foot stiffness elsewhere", columns, rows, remark=remark, folded=True)
+
+
+def assumption_table(rows: Sequence[Assumption]) -> Table:
+    """What the robot file allows for, and what was found of it."""
+    columns = Column.words(*feet_text.ASSUMPTION_HEADS)
+    remark = (
+        "Std is the deviation under uncertainty: in the robot file. The last columns: the 95 % interval of K and C if "
+        "nothing else were wrong, of the axis where it is widest. Tell the robot file what is better known."
+    )
+    return Table.of(
+        "What the robot file may be wrong about", columns, feet_text.assumption_cells(rows), remark=remark
+    )
 
 
 def offset_table(offsets: Sequence[Offset]) -> Table:

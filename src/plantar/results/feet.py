@@ -15,6 +15,7 @@ from plantar.files import write_text
 from plantar.notes import Note, listing
 from plantar.results import feet_text, text
 from plantar.results.feet_rows import (
+    Assumption,
     AxisModel,
     Comparison,
     DelayEstimate,
@@ -34,13 +35,13 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 __all__ = [
-    "FEET_SCHEMA", "AxisModel", "Comparison", "DelayEstimate", "Diagnosis", "FeetResult", "Input", "Offset",
-    "Parameter", "ValidationRow", "Verdict",
+    "FEET_SCHEMA", "Assumption", "AxisModel", "Comparison", "DelayEstimate", "Diagnosis", "FeetResult", "Input",
+    "Offset", "Parameter", "ValidationRow", "Verdict",
 ]  # fmt: skip
 
 FEET_SCHEMA: Final = "plantar.feet/1"
 # Keys of the file only where there are rows.
-_IF_ANY: Final = ("comparisons", "stances", "walks", "swing_zeros")
+_IF_ANY: Final = ("assumptions", "comparisons", "stances", "walks", "swing_zeros")
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,7 +56,8 @@ class FeetResult:
         validation: errors [N·m] on fitted (direct) and unseen (cross) motions. notes: what was assumed.
         robot_model: path of the URDF and geometry of the feet [m, rad], for exports.
         sensor_delay: how late the sensors are [s]. compliance: of each foot along z [m/N], 0 where not known.
-        diagnosis: what limits each number. comparisons: the same logs under other choices.
+        diagnosis: what limits each number. assumptions: what may be wrong about the robot, as its file says, and what
+            was found of it. comparisons: the same logs under other choices.
         campaign: what `plantar demo` adds, as plain data; None elsewhere.
         stances, walks: stiffness by each stance and by each recording alone [N·m/rad], where feet step. swing_zeros:
             what their force sensors read in the air [N, N·m].
@@ -86,6 +88,7 @@ class FeetResult:
     sensor_delay: DelayEstimate | None = None
     compliance: Mapping[str, float] = field(default_factory=dict)
     diagnosis: tuple[Diagnosis, ...] = ()
+    assumptions: tuple[Assumption, ...] = ()
     comparisons: tuple[Comparison, ...] = ()
     campaign: Mapping[str, Any] | None = None
     stances: tuple[StanceStiffness, ...] = ()
@@ -249,6 +252,7 @@ class FeetResult:
             sensor_delay=None if delay is None else row_of(DelayEstimate, delay, "latency", path),
             compliance=value_of(dict[str, float], content, "compliance", path, {}),
             diagnosis=rows_of(Diagnosis, content, "diagnosis", path),
+            assumptions=rows_of(Assumption, content, "assumptions", path),
             comparisons=tuple(
                 Comparison.from_dict(row, f"comparisons.{k}", path) for k, row in enumerate(comparisons)
             ),

@@ -116,9 +116,9 @@ class AxisModel:
 
     `moment_arms` [m]: by how much the logs show the bush's centre aside and above its place; `turned` [rad]: by how
     much the force sensor is turned about the vertical, `leans` about the other axis; `crosstalk` [N.m/N]: of the
-    horizontal force that turns the other axis; `imu_turned` [rad]: by how much the IMU is turned about each of its
-    axes, as far as that shows. `held_out` says what was held out, `ranking` holds every model tried; both are None
-    where none was compared.
+    horizontal force that turns the other axis; `imu_turned` [rad]: the turn about each of the IMU's axes that
+    puts its angles right, as far as that shows. `held_out` says what was held out, `ranking` holds every model tried;
+    both are None where none was compared.
     """
 
     foot: str
@@ -195,6 +195,22 @@ class Diagnosis:
     half_width_percent: float
     text: str
     advice: str = ""
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """What the robot file says may be wrong by `assumed` (a standard deviation, in the unit of `name` there), and what
+    the logs show of it: `found` of `what`, with its deviation `std` where it has one. `stiffness_percent` and
+    `damping_percent`: the half of the 95 % interval that it alone would make, of the axis where that is largest; None
+    where it is counted elsewhere."""
+
+    name: str
+    what: str
+    assumed: float
+    found: float | None
+    std: float | None
+    stiffness_percent: float | None
+    damping_percent: float | None
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import degrees
 
 from plantar.conventions import NORMAL95
-from plantar.results.feet_rows import DelayEstimate, Parameter, ValidationRow
-from plantar.results.numbers import number, percent, unit, with_uncertainty
+from plantar.results.feet_rows import Assumption, DelayEstimate, Parameter, ValidationRow
+from plantar.results.numbers import MISSING, number, percent, unit, with_uncertainty
 
 HEADS = ("foot", "axis", "parameter", "value", "unit", "±", "verdict")
 PREDICTION_HEADS = ("motions", "foot", "axis", "mean |error|", "offset alone", "")
+ASSUMPTION_HEADS = ("uncertainty", "std", "of", "found, ± for 95 %", "K by it", "C by it")
+# How the keys of `uncertainty` are printed: factor and unit.
+PRINTED_IN = {
+    "wrench_gain": (100.0, "%"),
+    "wrench_crosstalk": (1e3, "mm"),
+    "wrench_delay": (1e3, "ms"),
+    "bush_position": (1e3, "mm"),
+    "encoder_zero": (degrees(1), "deg"),
+    "joint_compliance": (1e3, "mrad/N·m"),
+    "imu_mount": (degrees(1), "deg"),
+    "link_mass": (100.0, "%"),
+    "total_mass": (100.0, "%"),
+    "link_com": (1e3, "mm"),
+    "between_recordings": (100.0, "%"),
+}
+# Where the logs show no number of its own.
+NOT_FOUND = {
+    "wrench_crosstalk": "like a bush that is elsewhere: counted in bush_position",
+    "encoder_zero": "taken up by the offset of each recording",
+    "joint_compliance": "not from logs of standing and walking",
+    "link_mass": "in how well wrench_delay is known",
+    "link_com": "in how well wrench_delay is known",
+    "total_mass": "not from the feet's forces, which it calibrates",
+    "between_recordings": "none: recordings are alike as far as they show",
+}
 SYMBOLS = {"stiffness": "K", "damping": "C"}
 KINDS = {"direct": "fitted", "cross": "unseen"}
 
@@ -120,3 +146,32 @@ def delay_line(delay: DelayEstimate | None) -> list[str]:
     late = with_uncertainty(1e3 * delay.wrench_delay, 1e3 * NORMAL95 * delay.std if delay.std > 0 else None)
     known = "measured" if delay.measured else "as given" if delay.std == 0 else "not measured from these logs"
     return [f"Force sensors {late} ms late, {known}"]
+
+
+def assumption_cells(rows: Sequence[Assumption]) -> list[tuple[str, ...]]:
+    """What the robot file allows for, what the logs show of it, and how wide it makes K and C; none where nothing may
+    be wrong and nothing is."""
+    cells, last = [], ""
+    for row in rows:
+        if not (row.assumed or row.found or row.stiffness_percent or row.damping_percent):
+            continue
+        factor, shown = PRINTED_IN.get(row.name, (1.0, ""))
+        found = NOT_FOUND.get(row.name, "not in these logs")
+        assumed = f"{number(factor * row.assumed, 2)} {shown}".strip()
+        if row.found is not None:
+            value = factor * row.found
+            text = (
+                number(value, 2) if row.std is None else with_uncertainty(value, factor * NORMAL95 * row.std)
+            )
+            found = f"{text} {shown}".strip()
+        widths = [
+            f"± {percent(width)}" if width else MISSING
+            for width in (row.stiffness_percent, row.damping_percent)
+        ]
+        cells.append(
+            (row.name, assumed, row.what, found, *widths)
+            if row.name != last
+            else ("", "", row.what, found, "", "")
+        )
+        last = row.name
+    return cells

@@ -27,7 +27,6 @@ from plantar.signals.segments import longest_run, runs
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 KEPT_RATE = 40.0  # Hz of the samples that are kept: the cutoff is far below
 SHORTEST = 8.0  # s that a log must offer without a push or a blow
-DELAY_DRAWS = 16  # of a wrong URDF that take part in delays: these are filtered in every band
 EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 
 
@@ -171,7 +170,7 @@ def _along(
     calm = found.calm
     pair = replace(
         found.pair,
-        model_errors=equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot)[:DELAY_DRAWS]),
+        model_errors=equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot)),
     )
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     return NewtonEulerResidual(

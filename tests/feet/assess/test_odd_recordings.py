@@ -9,7 +9,7 @@ import pytest
 
 from biped import TRUTH, record, sway
 from bush_data_sets import Rubber
-from feet_trials import LINEAR, noisy
+from feet_trials import LINEAR, noisy, stepping
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.estimation.random_effects import Differences
 from plantar.feet.assess.odd_recordings import CODE, furthest, odd_recordings, odd_walks
@@ -108,7 +108,10 @@ def test_a_walk_is_told_from_others_by_the_scatter_of_its_stances() -> None:
             for k, (stiffness, half) in enumerate(rows)
         ]
         unseen = WalkStiffness("unseen", "validate", FOOT, "pitch", 9, 200.0, (190.0, 210.0))
-        return [note.text for note in odd_walks(fit, [*found, unseen])]
+        return [
+            note.text
+            for note in odd_walks(fit, [*found, unseen], recordings, tangent_blocks(recordings, fit))
+        ]
 
     (text,) = walks((420.0, 4.0), (378.0, 4.0), (420.0, 4.0))
     assert text.startswith(f"walk_1: {FOOT} pitch: stiffness is -10 ± ")
@@ -117,6 +120,19 @@ def test_a_walk_is_told_from_others_by_the_scatter_of_its_stances() -> None:
     assert "walk_1" in text
     assert walks((420.0, 40.0), (378.0, 40.0), (420.0, 40.0)) == []
     assert walks((420.0, 4.0)) == []
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.8, True), (1.0, False)])
+def test_a_recording_in_which_the_foot_stands_is_told_from_walks(
+    robot: RobotModel, share: float, told: bool
+) -> None:
+    law = TRUTH["left", "pitch"]
+    softer = {**TRUTH, ("left", "pitch"): replace(law, stiffness=share * law.stiffness)}
+    walks = [stepping(record(sway(f"walk_{seed}", seed, duration=15.0))) for seed in (1, 2, 3)]
+    logs = [noisy(log, seed) for seed, log in enumerate([*walks, record(sway("stand", 4, truth=softer))])]
+    found = [note.text for note in identify_feet(robot, logs, settings=LINEAR).notes if note.code == CODE]
+    assert [text.split(": stiffness")[0] for text in found] == ["stand: left pitch"] * told
+    assert all("beside that of 3 other recordings" in text for text in found)
 
 
 def test_no_number_of_an_odd_axis_is_usable(robot: RobotModel) -> None:
@@ -131,3 +147,11 @@ def test_no_number_of_an_odd_axis_is_usable(robot: RobotModel) -> None:
     told = {note.text.split(": stiffness")[0] for note in result.notes if note.code == CODE}
     assert told == {"sway_1: left pitch", "sway_1: left roll"}
     assert {row.foot for row in result.parameters if row.axis != "z" and row.verdict == "usable"} == {"right"}
+
+
+@pytest.mark.parametrize(("shares", "odd"), [([0.1], 0), ([0.0], None), ([0.1, 0.1], 0), ([0.1, 0.0], 1)])
+def test_of_logs_without_noise_nothing_is_unsure_and_the_odd_one_is_found(
+    shares: list[float], odd: int | None
+) -> None:
+    found = furthest(Differences(np.array(shares), np.zeros((len(shares), len(shares)))))
+    assert (found and found.place) == odd

@@ -84,7 +84,9 @@ def behind(angle: Array, play: float) -> Array:
     return read
 
 
-def said_of_encoders(rubber: Rubber, play: float = 0.0, late: int = 0, share: float = 0.0) -> list[Note]:
+def said_of_encoders(
+    rubber: Rubber, play: float = 0.0, late: int = 0, share: float = 0.0, noise: float = 0.05
+) -> list[Note]:
     """Of sways over an ankle that turns as the bush does by a `share`, and for the rest by itself, and over a hip; read
     with `play` [rad], or `late` by so many samples."""
     made = []
@@ -92,7 +94,7 @@ def said_of_encoders(rubber: Rubber, play: float = 0.0, late: int = 0, share: fl
         angle, own, hip = (swayed(COUNT, seed=seed + apart) for apart in (0, 10, 20))
         ankle, rate = share * angle + (1 - share) * own, np.gradient(angle, PERIOD)
         read = np.roll(behind(ankle, play), late)
-        torque = rubber.torque(angle, rate) + 0.05 * np.random.default_rng(seed).standard_normal(COUNT)
+        torque = rubber.torque(angle, rate) + noise * np.random.default_rng(seed).standard_normal(COUNT)
         one = made_recording(f"sway_{seed}", angle + ankle - read, torque, rate=rate)
         log = one.log.with_columns({"joint.ankle.position": read, "joint.hip.position": hip})
         made.append(replace(one, log=log))
@@ -116,6 +118,11 @@ def test_play_in_an_encoders_drive_is_told_with_its_joint_and_size(play: float, 
 )
 def test_no_encoder_without_play_is_told_of_it(rubber: Rubber, share: float) -> None:
     assert said_of_encoders(rubber, share=share) == []
+
+
+@pytest.mark.parametrize(("play", "told"), [(1e-6, False), (2e-3, True)])
+def test_play_that_moves_no_number_is_not_said_even_of_exact_logs(play: float, told: bool) -> None:
+    assert bool(said_of_encoders(PLAIN, play, noise=0.0)) == told
 
 
 def test_encoders_that_are_late_have_no_play() -> None:

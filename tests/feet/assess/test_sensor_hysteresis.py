@@ -51,8 +51,9 @@ def test_hysteresis_of_the_sensor_is_told_with_its_size(width: float) -> None:
 
 
 def test_hysteresis_whose_damping_the_interval_holds_is_not_told() -> None:
-    """As where sensors may be late by any time: 0.1 N.m takes some 1 N.m.s/rad off the damping."""
-    assert [len(said(PLAIN, 0.1, unsure)) for unsure in (0.05, 5.0)] == [1, 0]
+    """As where sensors may be late by any time: 0.1 N.m takes some 1 N.m.s/rad off the damping. The sign gives back a
+    part of that: it is told, too, where that part alone would be inside."""
+    assert [len(said(PLAIN, 0.1, unsure)) for unsure in (0.05, 1.1, 5.0)] == [1, 1, 0]
 
 
 @pytest.mark.parametrize(

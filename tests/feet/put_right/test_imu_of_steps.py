@@ -143,11 +143,13 @@ def test_a_turn_far_beyond_the_robot_files_is_a_warning() -> None:
     (some,) = imu_turn_notes(ImuTurn((0.01, 0.0, 0.0), 1e-6 * np.eye(3)), MOUNT)
     (far,) = imu_turn_notes(ImuTurn((0.0, -0.05, 0.0), 1e-6 * np.eye(3)), MOUNT)
     assert (some.severity, far.severity) == ("info", "warning")
-    assert "x +0.57 ± 0.11" in some.text
+    assert "x -0.57 ± 0.11" in some.text, (
+        "the angles are put right by the opposite of what the IMU is turned by"
+    )
 
 
 @pytest.mark.parametrize(("share", "severity"), [(2.9, "info"), (3.1, "warning"), (-3.1, "warning")])
 def test_a_turn_is_worth_a_look_from_three_deviations_on(share: float, severity: str) -> None:
     (note,) = imu_turn_notes(ImuTurn((0.0, share * 0.01, 0.002), 1e-6 * np.eye(3)), 0.01)
     assert note.severity == severity
-    assert f"y {np.degrees(share * 0.01):+.2f} ± 0.11" in note.text
+    assert f"y {-np.degrees(share * 0.01):+.2f} ± 0.11" in note.text

@@ -28,7 +28,7 @@ MODEL_HELP = (
 )
 SWING_HELP = (
     "Rubber that slips, for a target that holds no slip: amplitude of the motions to be right for, in rad. "
-    "If left out: K and C nearest to the identified motions."
+    "If left out: the middle of the identified motions'."
 )
 PIVOT_HELP = (
     "mujoco-contact: 'ground', or 'bush' for feet that turn about the bush centre as the robot's do; "

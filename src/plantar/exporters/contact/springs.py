@@ -110,7 +110,7 @@ def said(bush: FootBush, foot: PointFoot, weight: float) -> list[Note]:
         text += "and the foot is softer"
         notes.append(Note("export_contact", "info" if abs(worst) <= NEAR[0] else "warning", text))
     notes.append(vertical_note(bush, foot))
-    text = "points hold no hysteresis, no hardening and do not pull; the nearest spring and damper is written"
+    text = "points hold no hysteresis, no hardening and do not pull; a spring and damper is written"
     notes.info("export_points", text)
     return notes
 

@@ -35,6 +35,8 @@ REMEDY = {
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
     ZEROS_OF_STANCES: "keep the foot on the floor through a recording: put down again, it lands with another zero",
+    "bush position": "measure where the bush's centre is beside the force sensor, and write it into the robot file "
+    "(bush: xyz, and uncertainty: bush_position); or record larger motions, which show it",
     "imu turn": "add walks along curves: they show how the IMU is turned in its mount; or measure it and write it into "
     "the robot file (imu: rpy, and uncertainty: imu_mount)",
     "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
@@ -69,7 +71,10 @@ def diagnose_axis(
             name = "excitation"
         elif fit.std[place] > MODEL_SHARE * fit.white_std[place]:
             name = "model"
-        shares[name] = float(fit.std[place] / total) ** 2
+        for cause, variance in fit.place_variance.items():
+            shares[cause] = float(variance[place]) / total**2
+        own = float(fit.std[place]) ** 2 - sum(float(each[place]) for each in fit.place_variance.values())
+        shares[name] = max(0.0, own) / total**2
         limit = max(shares, key=lambda cause: shares[cause])
         without = float(np.sqrt(max(0.0, 1 - shares[limit])))
         # As the row itself says it, which knows how few the data are that it comes from.

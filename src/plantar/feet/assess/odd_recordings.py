@@ -6,18 +6,20 @@ is; or a memory is made up for what they disagree in.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from plantar.conventions import NORMAL95, Array
-from plantar.estimation import Block, fit_blocks, influences_of
-from plantar.estimation.random_effects import Differences, share_between
+from plantar.estimation import Block, fit_blocks, influences_of, interval95
+from plantar.estimation.errors_in_variables import attenuation
+from plantar.estimation.random_effects import LEAST, Differences, share_between
 from plantar.feet.interval_width.between_recordings import among, beside_one
+from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside
+from plantar.feet.regression.regression_data import all_beside, beside, recordings_of
 from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.walk_rows import WalkStiffness
@@ -64,18 +66,37 @@ def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> lis
     return _notes(odd, wide, [blocks[place].label for place in tell])
 
 
-def odd_walks(wide: AxisFit, walks: Sequence[WalkStiffness]) -> list[Note]:
-    """The same of fitted walks, each by itself: by the scatter of its own stances."""
-    fitted = [row for row in walks if row.role == "fit"]
+def odd_walks(
+    wide: AxisFit, walks: Sequence[WalkStiffness], recordings: Sequence[Recording], tangent: Sequence[Block]
+) -> list[Note]:
+    """The same of fitted walks, each by itself, by the scatter of its own stances; and of those of the `recordings` in
+    which the foot stands meanwhile. tangent: as of `odd_recordings`."""
+    known = [(row.motion, row.stiffness, row.interval95) for row in walks if row.role == "fit"]
+    if known:
+        known += _standing(wide.foot, recordings_of(tangent, recordings), tangent)
     stiffness = float(wide.values[0])
-    if len(fitted) < 2 or not stiffness > 0:
+    if len(known) < 2 or not stiffness > 0:
         return []
-    shares = np.array([row.stiffness for row in fitted]) / stiffness
+    shares = np.array([value for _, value, _ in known]) / stiffness
     # An interval of few stances is wide by Student's quantile, so that few that scatter little by chance are not sure.
-    std = np.array([row.interval95[1] - row.interval95[0] for row in fitted]) / (2 * NORMAL95 * stiffness)
+    std = np.array([high - low for _, _, (low, high) in known]) / (2 * NORMAL95 * stiffness)
     covariance = np.diag(std[1:] ** 2) + std[0] ** 2
     odd = furthest(Differences(shares[1:] - shares[0], covariance))
-    return _notes(odd, wide, [row.motion for row in fitted])
+    return _notes(odd, wide, [name for name, _, _ in known])
+
+
+def _standing(
+    foot: str, recordings: Sequence[Recording], blocks: Sequence[Block]
+) -> Iterator[tuple[str, float, tuple[float, float]]]:
+    """Name, stiffness and 95 % interval of each recording in which the foot stands, by the columns of walks."""
+    for recording, block in zip(recordings, blocks, strict=True):
+        if recording.stances[foot] is None and block.common_nuisance is not None:
+            alone = beside(replace(block, stances=None, common_nuisance=None), block.common_nuisance)
+            found = fit_blocks([alone])
+            noise = attenuation([alone], found.values, shared_offset=False)
+            if noise is not None:  # angles that are mostly noise give no slope
+                value, std, freedom = found.values[0] + noise[0], found.std[0], found.freedom[0]
+                yield block.label, float(value), interval95(float(value), float(std), float(freedom))
 
 
 def _notes(odd: Odd | None, fit: AxisFit, names: Sequence[str]) -> list[Note]:
@@ -120,9 +141,10 @@ def _beside_others(shares: Array, covariance: Array, place: int) -> Odd:
 
 
 def _apart(shares: Array, covariance: Array) -> float:
-    """By which share these differ among one another; nothing is known of one alone."""
+    """By which share these differ among one another; nothing is known of one alone. Never 0: without noise a covariance
+    is."""
     if len(shares) < 2:
-        return 0.0
+        return LEAST
     step = np.eye(len(shares))[1:] - np.eye(len(shares))[0]
     beside = Differences(step @ shares, step @ covariance @ step.T)
     return share_between([beside], float(np.sqrt(np.mean(np.diag(beside.covariance))))).share

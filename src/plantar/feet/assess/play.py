@@ -31,25 +31,27 @@ CODE = "play"
 
 
 def play_notes(
-    recordings: Sequence[Recording], fit: AxisFit, tangents: Sequence[Block], shared: bool
+    recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
 ) -> list[Note]:
-    """A warning where play explains a standing foot's torque far better than the model that was found.
+    """A warning where play explains a standing foot's torque far better than the model that was found, and moves
+    stiffness or damping out of the interval of `wide`.
 
     tangents: the recordings' `tangent_blocks`.
     """
     if tangents[0].stances is not None:
         return []
-    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared)
-    column = ROTATIONAL_AXES.index(fit.axis)
-    signs = [_sign(one, fit.foot, column)[:, None] for one in recordings_of(blocks, recordings)]
+    blocks = blocks_of(recordings, wide.foot, wide.axis, drift=not shared)
+    column = ROTATIONAL_AXES.index(wide.axis)
+    signs = [_sign(one, wide.foot, column)[:, None] for one in recordings_of(blocks, recordings)]
     found = fit_blocks(all_beside(blocks, signs), shared_offset=shared)
     stiffness, loss = float(found.values[0]), -float(found.values[2])
     if stiffness <= 0 or loss < SURE * float(found.std[2]):
         return []
-    if fit_blocks(tangents, shared_offset=shared).squares < BETTER * found.squares:
+    usual = fit_blocks(tangents, shared_offset=shared)
+    if usual.squares < BETTER * found.squares or wide.holds(found.values[:2] - usual.values[:2]):
         return []
     text = (
-        f"{fit.foot} {fit.axis}: the angle jumps by {2e3 * loss / stiffness:.2g} mrad where the torque changes its "
+        f"{wide.foot} {wide.axis}: the angle jumps by {2e3 * loss / stiffness:.2g} mrad where the torque changes its "
         "sign: play between an encoder and the foot, which makes the spring look softer (valid: encoders on the foot's "
         "side of every gear; or keep the torque on one side of zero)"
     )
@@ -64,12 +66,13 @@ def _sign(recording: Recording, foot: str, column: int) -> Array:
 
 def encoder_play_notes(
     recordings: Sequence[Recording],
-    fit: AxisFit,
+    wide: AxisFit,
     tangents: Sequence[Block],
     joints: Iterable[str],
     shared: bool,
 ) -> list[Note]:
-    """A warning where the angle stays behind at each turn of one of the `joints` between IMU and foot.
+    """A warning where the angle stays behind at each turn of one of the `joints` between IMU and foot, and that moves
+    stiffness or damping out of the interval of `wide`.
 
     recordings: with all of their logs; tangents: of the same, as they are fitted. Encoders that are late go with the
     joint's rate itself: where that explains more, it is no play.
@@ -80,7 +83,7 @@ def encoder_play_notes(
     left = np.concatenate([found.residuals[block.label] for block in tangents])
     most, rates, signs = 0.0, list[Array](), list[Array]()
     for name in sorted(joints):
-        own = [_joint_rate(one, fit.foot, name) for one in recordings_of(tangents, recordings)]
+        own = [_joint_rate(one, wide.foot, name) for one in recordings_of(tangents, recordings)]
         fast = float(np.percentile(np.abs(np.concatenate(own)), FAST))
         if not fast > 0:  # it stands still, or is not recorded
             continue
@@ -98,10 +101,10 @@ def encoder_play_notes(
     behind, stiffness = abs(float(play.values[-1])), abs(float(play.values[0]))
     if behind < SURE * float(play.std[-1]) or found.squares < BETTER_TURNING * play.squares:
         return []
-    if late.squares < play.squares:
+    if late.squares < play.squares or wide.holds(play.values[:2] - found.values[:2]):
         return []
     text = (
-        f"{fit.foot} {fit.axis}: the angle stays behind by {2e3 * behind / stiffness:.2g} mrad wherever joint "
+        f"{wide.foot} {wide.axis}: the angle stays behind by {2e3 * behind / stiffness:.2g} mrad wherever joint "
         f"'{joint}' turns round: play in its encoder's drive, which makes the damping too small (valid: encoders "
         "without play)"
     )

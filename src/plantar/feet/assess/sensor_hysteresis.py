@@ -22,6 +22,9 @@ from plantar.notes import Note
 SOFT = 0.02
 SURE = 4.0  # deviations of the hysteresis: of healthy feet it is below 3
 RATE = 1  # the place of damping in spring and damper
+# Of the damping's interval, by which the sign moves it: a sensor stays behind only after it has turned far enough, so
+# that a sign gives back a sixth to a half of what is missing.
+PART = 0.5
 HYSTERESIS = "sensor_hysteresis"
 
 
@@ -29,7 +32,7 @@ def hysteresis_notes(
     recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
 ) -> list[Note]:
     """A warning where a standing foot's torque stays behind its angle by the same amount at any speed, and that moves
-    its damping out of the interval of `wide`.
+    its damping far within the interval of `wide`: there is more behind it.
 
     tangents: the recordings' `tangent_blocks`.
     """
@@ -45,7 +48,7 @@ def hysteresis_notes(
     if behind < SURE * float(found.std[-1]):
         return []
     moved = float(found.values[RATE] - fit_blocks(tangents, shared_offset=shared).values[RATE])
-    if abs(moved) < NORMAL95 * float(wide.std[RATE]):
+    if abs(moved) < PART * NORMAL95 * float(wide.std[RATE]):
         return []
     text = (
         f"{wide.foot} {wide.axis}: the torque stays {behind:.2g} N.m behind at each turn of the motion, at any speed: "

@@ -48,16 +48,19 @@ def fit_axis(
     model: BushModel | None = None,
     place: PlaceSpread | None = None,
     timed: bool = True,
+    before: AxisFit | None = None,
 ) -> AxisFit | None:
     """The model given or asked for, or the one that predicts held-out motions; None where no recording has samples.
 
     What errors of the angles do to its values is taken off, where that matters. `place`: what the robot file's place of
     the bush may be off by; not `timed`: sensors may be late by any time, which looks like a memory: none is chosen.
+    `before`: the fit of the same recordings, with a few samples more or about another place, to go on from.
     """
     shared = settings.offset == "shared"
     if model is None and settings.model != AUTOMATIC:
         model = MODELS[settings.model]
-    fit = _fitted(recordings, foot, axis, settings, model, place, timed)
+    choice = None if before is None else before.choice
+    fit = _fitted(recordings, foot, axis, settings, model, place, timed, choice)
     if fit is None:
         return None
     fit = about_true_zero(fit, recordings, shared)
@@ -73,6 +76,7 @@ def _fitted(
     asked: BushModel | None,
     place: PlaceSpread | None,
     timed: bool,
+    before: ModelChoice | None,
 ) -> AxisFit | None:
     shared = settings.offset == "shared"
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
@@ -109,7 +113,7 @@ def _fitted(
     memory = timed if steps else _remembers(data_sets)
     models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
     gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
-    choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
+    choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain, before=before)
     choice = cautioned(choice, timed=timed, steps=steps, torn=not (steps or memory))
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)

@@ -1,1 +1,1 @@
-"""Bush, force sensor and IMU that are not where, or not as, the robot file says."""
+"""Bush, force sensor, IMU and joints that are not where, or not as, the robot file says."""

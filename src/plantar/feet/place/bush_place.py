@@ -63,8 +63,11 @@ def about_its_place(
         unsure[np.ix_(tried, tried)] = left[: len(tried), : len(tried)]
     follows = effect_of(influences_of(blocks, shared_offset=shared), columns)
     moved = -follows @ (place - before)
-    covariance = fit.covariance.copy()
+    covariance, variance = fit.covariance.copy(), {}
     covariance[:size, :size] += follows @ unsure @ follows.T
+    for cause, own in (("bush position", slice(0, 3)), ("imu turn", slice(3, 6))):
+        variance[cause] = np.zeros(len(covariance))
+        variance[cause][:size] = np.diag(follows[:, own] @ unsure[own, own] @ follows[:, own].T)
     # An offset is the torque at zero angle: it moves with the IMU's turn, also with one that does not show.
     unshown = np.diag(np.where(spreads > 0, 0.0, spread.deviations) ** 2)
     offset_std = dict(fit.offset_std)
@@ -82,6 +85,8 @@ def about_its_place(
         moment_arms=(float(place[0]), float(place[1])),
         turned=float(place[2]),
         imu_turned=(float(place[3]), float(place[4]), float(place[5])),
+        place_std=tuple(np.sqrt(np.diag(unsure) + np.diag(unshown)).tolist()),
+        place_variance=variance,
         notes=(*fit.notes, *place_notes(fit, place, np.sqrt(np.diag(unsure)), spread.deviations)),
     )
 

@@ -19,8 +19,8 @@ SINGULAR = 1e6  # condition of a fit beyond which its motions do not show the tu
 
 
 class ImuTurn(NamedTuple):
-    """`angles` [rad] by which the IMU is turned about its own axes beside the robot file's mount, and their
-    `covariance` (3, 3)."""
+    """`angles` [rad] about the IMU's own axes that put its angles right, the opposite of those by which it is turned
+    beside the robot file's mount, and their `covariance` (3, 3)."""
 
     angles: tuple[float, float, float]
     covariance: Array

@@ -66,14 +66,14 @@ def put_right(ready: PreparedLogs, shown: ImuTurn) -> PreparedLogs:
 
 
 def imu_turn_notes(turn: ImuTurn, mount: float) -> list[Note]:
-    """What the IMU is turned by, where angles were put right."""
+    """What the IMU is turned by, where angles were put right by the opposite turn."""
     if not any(turn.angles):
         return []
     far = max(abs(angle) for angle in turn.angles) > FAR * mount
     severity: Severity = "warning" if far else "info"
     degrees, std = np.degrees(turn.angles), np.degrees(np.sqrt(np.diag(turn.covariance)))
     told = ", ".join(
-        f"{axis} {angle:+.2f} ± {2 * own:.2f}" for axis, angle, own in zip("xyz", degrees, std, strict=True)
+        f"{axis} {-angle:+.2f} ± {2 * own:.2f}" for axis, angle, own in zip("xyz", degrees, std, strict=True)
     )
     text = (
         f"steps show that the IMU is turned beside the robot file's rpy, about its own axes by {told} deg (95 %): "

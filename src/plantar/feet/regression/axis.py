@@ -8,10 +8,12 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from plantar.conventions import Array, Axis
+from plantar.conventions import NORMAL95, Array, Axis
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import BushModel
 from plantar.notes import Note
+
+WORTH = 0.01  # of stiffness or damping: less matters to nobody, even of logs without noise
 
 
 class AngleDrift(NamedTuple):
@@ -32,8 +34,8 @@ class FittedModel:
     `moment_arms` [m]: by how much the bush's centre is aside and above its place; `turned` [rad]: by how much the
     force sensor is turned about the vertical, so that the other axis' torque shows in this one; `leans` [rad]: about
     the other axis, so that the yaw torque does; `crosstalk` [N.m/N]: of the horizontal force that turns the
-    other axis; `imu_turned` [rad]: by how much the IMU is turned about each of its axes, as far as that shows while
-    joints between it and the foot move.
+    other axis; `imu_turned` [rad]: the turn about each of the IMU's axes that puts its angles right, as far as that
+    shows while joints between it and the foot move.
     Of the recordings that were fitted: `offsets` [N.m], `initial_states` of the model's memory in each recording's
     runs, and the `drifts` that its path is without.
     """
@@ -82,7 +84,8 @@ class FittedModel:
 class AxisFit(FittedModel):
     """A fitted model and how well it is known: `covariance`, `freedom` and `white_std` run over values and shape.
     `equivalent`: K and C of spring and damper over the same motions; `hidden_share`: of the stiffness, that a memory
-    would make which other axes of the robot show and this one's motions do not exclude."""
+    would make which other axes of the robot show and this one's motions do not exclude. `place_std`: of `moment_arms`,
+    `turned` and `imu_turned`, None where nobody knows; `place_variance`: what these add to the variances, by cause."""
 
     covariance: Array
     freedom: Array
@@ -93,7 +96,14 @@ class AxisFit(FittedModel):
     reason: str
     notes: tuple[Note, ...] = ()
     hidden_share: float = 0.0
+    place_std: tuple[float | None, ...] = (None,) * 6
+    place_variance: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def std(self) -> Array:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    def holds(self, moved: Array) -> bool:
+        """Whether stiffness and damping that are `moved` (2,) stay within their intervals, or nearly where they are."""
+        inside = np.maximum(NORMAL95 * self.std[:2], WORTH * np.abs(self.values[:2]))
+        return bool((np.abs(moved) <= inside).all())

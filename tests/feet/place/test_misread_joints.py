@@ -1,0 +1,98 @@
+"""A joint that reads a share too much, or late, is told where a foot steps: stiffness and damping follow it."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from biped import record, sines, sway
+from feet_trials import LINEAR, noisy, stepping
+from plantar.feet.identify import identify_feet
+from plantar.feet.place.misread_joints import MISREAD
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+
+TRUNK = (
+    sines((0.01, 0.35, 0.3)),
+    sines((0.02, 0.45, 0.7)),
+    sines((0.0, 0.0, 0.0)),
+)  # leans as far as ankles turn
+
+
+@cache
+def stepped() -> list[MotionLog]:
+    return [stepping(record(sway(f"walk_{seed}", seed, duration=15.0, torso=TRUNK))) for seed in (1, 2, 3)]
+
+
+@pytest.fixture(scope="module")
+def walks() -> list[MotionLog]:
+    return [noisy(log, seed) for seed, log in enumerate(stepped())]
+
+
+def misread(log: MotionLog, joint: str, gain: float = 1.0, late: float = 0.0) -> MotionLog:
+    """The log with one encoder that reads `gain` times its angle, `late` by so much [s]."""
+    names = [f"joint.{joint}.{quantity}" for quantity in ("position", "velocity")]
+    return log.with_columns(
+        {name: gain * np.interp(log.time - late, log.time, log.column(name)) for name in names}
+    )
+
+
+def said(found: FeetResult) -> list[str]:
+    return [note.text for note in found.notes if note.code == MISREAD and note.severity == "warning"]
+
+
+@pytest.mark.parametrize(
+    ("joint", "axis", "gain", "late", "words"),
+    [
+        ("left_ankle_pitch", "pitch", 1.05, 0.0, "'left_ankle_pitch' 1.05 times. "),
+        ("left_ankle_roll", "roll", 0.95, 0.0, "'left_ankle_roll' 0.95 times. "),
+        ("left_ankle_roll", "roll", 1.0, 0.008, " ms late. "),
+        ("left_ankle_roll", "roll", 1.0, -0.008, " ms early. "),
+    ],
+)
+def test_the_joint_is_named_and_neither_number_is_usable(
+    robot: RobotModel, walks: list[MotionLog], joint: str, axis: str, gain: float, late: float, words: str
+) -> None:
+    found = identify_feet(robot, [misread(log, joint, gain, late) for log in walks], settings=LINEAR)
+    (text,) = said(found)
+    assert text.startswith(f"left {axis}: ")
+    assert f"'{joint}'" in text
+    assert words in text
+    if late:
+        assert 1e-3 * float(text.split(words)[0].split()[-1]) == pytest.approx(abs(late), rel=0.1)
+    rows = [row for row in found.parameters if row.foot == "left" and row.name in ("stiffness", "damping")]
+    doubted = [row.axis for row in rows if "read otherwise" in row.reason]
+    assert doubted == [axis, axis]
+    assert all(row.verdict == "usable" for row in rows if row.axis not in (axis, "z"))
+
+
+@pytest.mark.parametrize(("joint", "gain"), [("left_ankle_pitch", 1.0), ("right_ankle_pitch", 1.05)])
+def test_nothing_is_said_of_joints_read_right_nor_of_a_foot_that_stands(
+    robot: RobotModel, walks: list[MotionLog], joint: str, gain: float
+) -> None:
+    assert said(identify_feet(robot, [misread(log, joint, gain) for log in walks], settings=LINEAR)) == []
+
+
+@pytest.mark.parametrize(("gain", "told"), [(1.004, False), (1.01, True)])
+def test_what_moves_no_number_by_a_per_cent_is_not_said(robot: RobotModel, gain: float, told: bool) -> None:
+    """Of exact logs, whose intervals hold nothing else."""
+    exact = [misread(log, "left_ankle_pitch", gain) for log in stepped()]
+    assert bool(said(identify_feet(robot, exact, settings=LINEAR))) == told
+
+
+@pytest.mark.parametrize(("noise", "told"), [(0.3, True), (3.2, False)])
+def test_it_has_to_explain_a_third_of_what_is_left(
+    robot: RobotModel, walks: list[MotionLog], noise: float, told: bool
+) -> None:
+    random = np.random.default_rng(0)
+    rough = []
+    for log in walks:
+        torque = log.column("wrench.left.torque.y")
+        more = noise * random.standard_normal(len(log)) * (torque != 0)
+        rough.append(
+            misread(log.with_columns({"wrench.left.torque.y": torque + more}), "left_ankle_pitch", 1.1)
+        )
+    assert bool(said(identify_feet(robot, rough, settings=LINEAR))) == told
