@@ -10,13 +10,12 @@ import pytest
 
 from biped import record, sway
 from biped_robot import FEET, Frame, Mounting
-from feet_trials import noisy
+from feet_trials import noisy, shifted
 from plantar.conventions import NORMAL95
 from plantar.feet.assess.diagnosis import REMEDY
 from plantar.feet.assumptions import CAUSES
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
-from plantar.logs.motion_log import MotionLog
 from plantar.report.feet import feet_page
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import Assumption
@@ -31,16 +30,6 @@ TURN = 0.02  # rad, of the IMU about its z
 SETTINGS = FeetSettings(model="kelvin_voigt")
 
 
-def elsewhere(log: MotionLog) -> MotionLog:
-    """The log of force sensors that sit ASIDE of where the robot file has them."""
-    moved = {}
-    for foot in FEET:
-        names = [f"wrench.{foot}.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
-        force, torque = np.hsplit(log.stack(names), 2)
-        moved |= dict(zip(names[3:], (torque - np.cross(ASIDE, force)).T, strict=True))
-    return log.with_columns(moved)
-
-
 @pytest.fixture(scope="module")
 def usual(robot: RobotModel) -> RobotModel:
     """The robot as a careful lab knows it."""
@@ -52,7 +41,7 @@ def found(usual: RobotModel) -> FeetResult:
     turn = Mounting(imu=Frame((0.0, 0.0, 0.0), (0.0, 0.0, TURN)))
     motions = [sway(f"sway_{seed}", seed, duration=40.0) for seed in (3, 4)]
     return identify_feet(
-        usual, [elsewhere(noisy(record(one, turn), 5)) for one in motions], settings=SETTINGS
+        usual, [shifted(noisy(record(one, turn), 5), ASIDE) for one in motions], settings=SETTINGS
     )
 
 

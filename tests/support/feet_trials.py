@@ -79,3 +79,13 @@ def stepping(log: MotionLog) -> MotionLog:
                 changed[f"wrench.right.{part}.{axis}"] = right + np.where(loaded, 0.0, left)
     changed["wrench.left.force.z"] = changed["wrench.left.force.z"] + ZERO
     return drawn_up(log.with_columns(changed), "left", ~loaded)
+
+
+def shifted(log: MotionLog, arm: np.ndarray) -> MotionLog:
+    """The log of force sensors that sit `arm` (3,) [m] away from where the robot file has them."""
+    moved = {}
+    for foot in FEET:
+        names = [f"wrench.{foot}.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
+        force, torque = np.hsplit(log.stack(names), 2)
+        moved |= dict(zip(names[3:], (torque - np.cross(arm, force)).T, strict=True))
+    return log.with_columns(moved)

@@ -102,20 +102,19 @@ def spring_of(
         message = f"{where}: the stiffness is not positive; no simulator can stand on it"
         raise ExportError(message, value=stiffness, valid="a result whose stiffness is usable")
     extra = [name for name in values if name not in KNOWN_TERMS]
-    slip = swung = at = None
+    slip = swung = None
     if set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
         element = Slip(*(values[name] for name in SLIP_TERMS))
         if hysteresis:
             slip, extra = element, []
         elif (at := swing or _usual_swing(result, foot, axis)) is not None:
-            swung = element
+            swung = element.stiffness_at(at), element.damping_at(at)
+            text = f"{where}: the slip is written as the spring and damper of swings of {at:.3g} rad at {SWAY:g} rad/s"
+            if not swing:
+                text += ", the middle of the identified motions; for others give --swing"
+            notes.warning("export_swing", text)
     nearest = _linear_equivalent(result, foot, axis) if extra and swung is None else None
-    if swung is not None:
-        text = f"{where}: the slip is written as the spring and damper of swings of {at:.3g} rad at {SWAY:g} rad/s"
-        if not swing:
-            text += ", the middle of the identified motions; for others give --swing"
-        notes.warning("export_swing", text)
-    elif extra:
+    if extra and swung is None:
         text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
         if nearest is not None:
             text += "; K and C are those of the spring and damper nearest to the identified motions"
@@ -126,9 +125,8 @@ def spring_of(
         _doubt(mine.get("damping", {}), where, notes)
     else:
         damping, assumed = _damping(mine.get("damping", {}), stiffness, where, notes)
-    if swung is not None and at is not None:
-        stiffness += swung.stiffness_at(at)
-        damping += swung.damping_at(at)
+    if swung is not None:
+        stiffness, damping = stiffness + swung[0], damping + swung[1]
     offsets = [
         _number(row.get("value"), f"{where} offset")
         for row in (*result.get("offsets", ()), *(row for name, row in mine.items() if name == "offset"))

@@ -10,7 +10,7 @@ import pytest
 
 from biped import SLIPPING, TRUTH, record, sines, sway
 from biped_robot import FEET, Frame, Mounting
-from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy
+from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy, shifted
 from plantar.conventions import Axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.place.bush_place import shape_moved
@@ -27,16 +27,6 @@ from plantar.robot.uncertainty import Uncertainty
 @pytest.fixture(scope="module")
 def recorded() -> list[MotionLog]:
     return [noisy(record(sway(f"sway_{seed}", seed, duration=40.0)), seed) for seed in (3, 4)]
-
-
-def shifted(log: MotionLog, arm: np.ndarray) -> MotionLog:
-    """The log of force sensors that sit `arm` (3,) [m] away from where the robot file has them."""
-    moved = {}
-    for foot in FEET:
-        names = [f"wrench.{foot}.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
-        force, torque = np.hsplit(log.stack(names), 2)
-        moved |= dict(zip(names[3:], (torque - np.cross(arm, force)).T, strict=True))
-    return log.with_columns(moved)
 
 
 def turned(log: MotionLog, angle: float) -> MotionLog:
