@@ -94,32 +94,31 @@ def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
     """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
     each second by which it is read later."""
-    rows, columns = recording.rows(fit.foot), dict[tuple[str, str], Array]()
-    for joint, (shares, angle) in _turns(robot, recording, fit.foot).items():
-        rate = differentiate(angle, recording.period)
-        slope = differentiate(rate, recording.period)
+    columns = dict[tuple[str, str], Array]()
+    for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
-        for kind, turned, its_rate in (("gain", angle, rate), ("late", rate, slope)):
-            torque = fit.values[0] * turned[rows] + fit.values[1] * its_rate[rows]
-            columns[joint, kind] = own * np.nan_to_num(torque)
+        for kind, first in (("gain", 0), ("late", 1)):
+            columns[joint, kind] = own * (motion[:, first : first + 2] @ fit.values[:2])
     return columns
 
 
 def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:
-    """Of each joint between IMU and foot, how much of its turn is the bush's in pitch and roll, (n, 2) at the rows of a
-    fit, and its angle (N,) [rad] through the fit's filter."""
+    """Of each joint between IMU and foot, at the rows of a fit: how much of its turn is the bush's in pitch and roll,
+    (n, 2), and its angle [rad] through the fit's filter with two derivatives, (n, 3), zero where nothing is known."""
     key = (MISREAD, foot)  # both axes ask
     if key not in recording.kept:
-        log, rows, found = recording.log, recording.rows(foot), dict[str, tuple[Array, Array]]()
+        log, rows, period = recording.log, recording.rows(foot), recording.period
         positions, (orientation, _) = log.positions(robot), attitude(log, robot.required_imu, [])
-        path, still = path_to(robot, foot)[0], np.zeros((int(rows.sum()), 3))
-        for joint in path.joints:
-            turns = np.zeros_like(positions[rows])
+        path, stances = path_to(robot, foot)[0], recording.stances[foot]
+        angles = within_stances(positions[:, path.joints], period, recording.cutoff, stances)
+        rates = differentiate(angles, period)
+        motions = np.nan_to_num([each[rows] for each in (angles, rates, differentiate(rates, period))])
+        positions, orientation, found = positions[rows], orientation[rows], dict[str, tuple[Array, Array]]()
+        still = np.zeros((len(positions), 3))
+        for place, joint in enumerate(path.joints):
+            turns = np.zeros_like(positions)
             turns[:, joint] = 1.0
-            shares = foot_motion(path, positions[rows], turns, orientation[rows], still).encoder_rate
-            angle = within_stances(
-                positions[:, [joint]], recording.period, recording.cutoff, recording.stances[foot]
-            )
-            found[robot.joint_names[joint]] = (shares, angle[:, 0])
+            shares = foot_motion(path, positions, turns, orientation, still).encoder_rate
+            found[robot.joint_names[joint]] = (shares, motions[:, :, place].T)
         recording.kept[key] = found
     return cast(dict[str, tuple[Array, Array]], recording.kept[key])
