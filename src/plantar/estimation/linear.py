@@ -53,6 +53,7 @@ def least_left(blocks: Sequence[Block], columns: Sequence[Array]) -> Array:
     rows = []
     for block, more in zip(blocks, columns, strict=True):
         own = block.with_nuisance(np.ones((len(more), 1))).nuisance
+        assert own is not None, "it has one column at least"
         rows.append(without(own, np.column_stack([common_columns(block), more, block.response])))
     left = TriangularFactor.of(np.vstack(rows)).factor[size:, size:]
     along, squares = left[:, -1] @ left[:, :-1], np.sum(left[:, :-1] ** 2, axis=0)

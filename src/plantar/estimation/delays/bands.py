@@ -91,25 +91,37 @@ def bands_of(predicted: Array, measured: Array, by_delay: Array, period: float, 
     sensors, delays = len(measured), len(by_delay)
     errors = errors if len(errors) else np.zeros((0, *predicted.shape))
     whole = measured.sum(axis=0)
-    missing = predicted - whole
-    parts = [predicted[None], by_delay, measured[1:] - measured[:1], missing[None], errors]
+    parts = [predicted[None], by_delay, measured[1:] - measured[:1], (predicted - whole)[None], errors]
     # Those with rates stand together first.
     order = [0, *range(delays + 1, delays + sensors), *range(1, delays + 1)]
     order += range(delays + sensors, delays + sensors + 1 + len(errors))
-    flat = np.hstack([column for part in parts for column in part])
-    least, found = LEAST_SHARE * np.var(whole, axis=0), list[Band]()
-    for width, thin, rated, stride in banded(flat, period, slice(0, 6 * (1 + delays))):
-        signals, rates = (
-            np.ascontiguousarray(some.reshape(len(some), -1, 6).transpose(2, 1, 0)) for some in (thin, rated)
-        )
-        signals, own = signals[:, order], sensors + delays + 1
-        halves = _parts(len(thin), len(flat) / stride)
-        split = [(signals[..., rows], rates[..., rows]) for rows in halves]
-        products = np.array([one @ one.transpose(0, 2, 1) for one, _ in split])
-        by_rate = np.array([rate @ one[:, own:].transpose(0, 2, 1) for one, rate in split])
-        kept = signals[:, :own].copy()
-        found.append(Band(sensors, kept, rates, products, by_rate, halves, least, width, stride * period))
-    return found
+    own, rated, least = sensors + delays + 1, slice(0, 1 + delays), LEAST_SHARE * np.var(whole, axis=0)
+
+    def along(axis: int) -> Iterator[Band]:
+        """Each band of one axis, as a band of that axis alone."""
+        flat = np.vstack([part[:, :, axis] for part in parts]).T
+        for width, thin, thin_rates, stride in banded(flat, period, rated):
+            signals, rates = np.ascontiguousarray(thin.T)[order], np.ascontiguousarray(thin_rates.T)
+            split = _parts(len(thin), len(flat) / stride)
+            products = np.array([signals[:, rows] @ signals[:, rows].T for rows in split])
+            by_rate = np.array([rates[:, rows] @ signals[own:, rows].T for rows in split])
+            kept = signals[:own].copy()
+            yield Band(sensors, kept, rates, products, by_rate, split, least[axis], width, stride * period)
+
+    # One axis after the other: all wrong models of all axes would be the largest array of any log.
+    return [_of_axes(axes) for axes in zip(*[[*along(axis)] for axis in range(6)], strict=True)]
+
+
+def _of_axes(axes: Sequence[Band]) -> Band:
+    """One band of all axes, of that of each."""
+    return replace(
+        axes[0],
+        signals=np.array([one.signals for one in axes]),
+        rates=np.array([one.rates for one in axes]),
+        products=np.stack([one.products for one in axes], axis=1),
+        by_rate=np.stack([one.by_rate for one in axes], axis=1),
+        least=np.array([one.least for one in axes]),
+    )
 
 
 def banded(signals: Array, period: float, rated: slice) -> Iterator[tuple[float, Array, Array, int]]:
