@@ -94,7 +94,7 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
 def test_limits_are_told_with_the_worst_of_the_rehearsals(written: Path) -> None:
     found = design_samples.designed()
     unlike = tuple(
-        replace(one, sole_margin=0.01 + 0.001 * k, friction=0.1 + 0.01 * k, effort=0.8 - 0.1 * k)
+        replace(one, sole_margins=(0.01 + 0.001 * k, 0.05), friction=0.1 + 0.01 * k, effort=0.8 - 0.1 * k)
         for k, one in enumerate(found.rehearsals)
     )
     content = content_of(replace(found, rehearsals=unlike), written, 100.0)
