@@ -40,11 +40,6 @@ SMALLER: Final = 0.85
 # much too large a motion is: its limit is held to as much less as it may.
 TIPS: Final = 0.0005
 SPARE: Final = 0.005  # less than what is just allowed
-# Where rehearsals leave room to a limit that was TIGHT, motions may use more of it, at most so much more each time.
-LARGER: Final = 1.2
-TIGHT: Final = 0.95  # of what may be used
-WORTH: Final = 1.02  # and at least so much: less is not worth two rehearsals
-GROWS: Final = 2  # times
 BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
 ROUNDS: Final = 12
 EFFORT: Final = 0.9  # of a joint's torque limit
@@ -188,8 +183,8 @@ def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float,
 class _Attempt:
     """A motion while rehearsals show how much of each limit it may use.
 
-    Where it uses more of one than holds, and a few times where it leaves room, that limit is held to another share, at
-    that stiffness alone, and the search goes on. A stiffness that amplifies does not make the motion small at others.
+    Where it uses more of one than holds, that limit is held to less, at that stiffness alone, and the search goes on. A
+    stiffness that amplifies does not make the motion small at others.
     """
 
     reach: Reach
@@ -203,7 +198,6 @@ class _Attempt:
         init=False
     )  # factors of the stiffness at which it is rehearsed before the others
     rehearsals: dict[float, Rehearsal] = field(default_factory=dict)  # of the motion as it is, by factor
-    may_grow: int = GROWS
 
     def __post_init__(self) -> None:
         self.shares = np.full((len(self.factors), len(KINDS)), LEFT)
@@ -228,35 +222,24 @@ class _Attempt:
         self.search_on()
         return True
 
-    def adapt(self) -> str | None:
-        """Search on within limits as rehearsals found them, and say so; None where these all hold and leave no room
-        that is worth it."""
+    def adapt(self) -> None:
+        """Search on within limits as rehearsals found them: what used too much may use less."""
         rows = [self.factors.index(factor) for factor in self.rehearsals]
         used = np.array([_used(one)[0] for one in self.rehearsals.values()])
         foretold, shares = self.reach.used_by_kind(self.coefficients)[rows], self.shares[rows]
-        change = np.clip(
-            (1 - SPARE) / np.sqrt(np.maximum(used, 1e-9)), SMALLER, LARGER if self.may_grow else 1.0
-        )
-        change[(used <= 1) & (foretold < TIGHT * shares)] = 1.0
-        if used.max() <= 1 and change.max() < WORTH:
-            self.may_grow = 0
-            return None
-        self.may_grow -= bool(self.may_grow)
-        failed = [factor for factor, own in zip(self.rehearsals, used, strict=True) if own.max() > 1]
-        self.first = failed or self.first
+        change = np.clip((1 - SPARE) / np.sqrt(np.maximum(used, 1.0)), SMALLER, 1.0)
+        change[used <= 1] = 1.0
+        self.first = [factor for factor, own in zip(self.rehearsals, used, strict=True) if own.max() > 1]
         # What lies between is held to shares between; what failed far from its limit is held to less than it used.
         order = np.argsort(rows)
         places = np.log(self.factors)
         for kind, own in enumerate(np.log(change[order]).T):
             self.shares[:, kind] *= np.exp(np.interp(places, places[np.array(rows)[order]], own))
-        self.shares[rows] = np.where(used > 1, change * np.minimum(shares, foretold), self.shares[rows])
+        self.shares[rows] = np.where(used > 1, change * np.minimum(shares, foretold), shares)
         self.search_on()
-        return "smaller" if failed else "larger: there is room"
 
     def next_factors(self) -> list[float]:
-        """At which stiffness to rehearse next: none are left, or before it grows the first ones tell enough."""
-        if self.may_grow and self.rehearsals:
-            return []
+        """At which stiffness to rehearse next."""
         left = sorted(
             (each for each in self.factors if each not in self.rehearsals),
             key=lambda each: each not in self.first,
@@ -296,14 +279,13 @@ def _rehearsed(
             found = rehearse(robot, plan, told, asked, progress)
             used, reason = max(((float(each.max()), why) for each, why in map(_used, found)))
             motion.rehearsals |= {one.factor: one for one in found}
-        if used > 1.0 or motion.may_grow:
-            change = motion.adapt()
-            if change is not None:
-                progress(change + (f": {reason}" if used > 1.0 else ""))
-        else:
-            progress("identify the feet from the rehearsals")
-            rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in motion.factors])
-            return motion.coefficients, rehearsals, watched.pairs
+        if used > 1.0:
+            progress(f"smaller: {reason}")
+            motion.adapt()
+            continue
+        progress("identify the feet from the rehearsals")
+        rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in motion.factors])
+        return motion.coefficients, rehearsals, watched.pairs
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 
