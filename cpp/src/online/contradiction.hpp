@@ -74,9 +74,9 @@ class TurnWatch {
       without_zero += turns * turns, common += turns * filtered_[0][i];
     }
     const double white = edge * edge * variance, noise = TURN_NOISE * TURN_NOISE * white;
-    followed_.see(attitude - white, without_zero, common, dt);
     const double turns = TURNS_DIFFER * TURNS_DIFFER * std::max(attitude, gyroscope);
     const double likely = std::max({LEAST_TURN * LEAST_TURN, noise, turns});
+    if (between <= likely) followed_.see(attitude - white, without_zero, common, dt);
     share_ = std::min(share_ + one_pole(dt, TURN_TIME) * ((between > likely) - share_), MOST_SHARE);
     return share_ > TURN_SHARE || followed_.apart(white) ||
            between > TURNS_SURE * TURNS_SURE * std::max(likely, LEAST_SURE * LEAST_SURE);
@@ -84,7 +84,7 @@ class TurnWatch {
 
  private:
   // Mean squares of both turns, and of what they have in common, over ZERO_TIME: turns that are too small to say
-  // anything at once add up.
+  // anything at once add up; those that do are told anyway.
   struct Followed {
     double age = 0.0, attitude = 0.0, gyroscope = 0.0, common = 0.0;
 
