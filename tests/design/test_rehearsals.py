@@ -143,6 +143,17 @@ def test_a_promise_is_the_widest_of_a_rehearsal_and_its_neighbours() -> None:
     assert promised == dict(zip(factors, [2.0, 3.0, 3.0, None, 1.5, 1.5], strict=True))
 
 
+def test_what_noise_makes_is_the_root_of_its_share_of_the_variance() -> None:
+    shares = {"noise": 0.09, "slip angle": 0.16, "sensor gain": 0.75}
+    row = Mock(foot="left", axis="roll", value=100.0, interval95=(96.0, 104.0))
+    row.name = "stiffness"
+    cause = Mock(foot="left", axis="roll", variance_shares=shares)
+    cause.name = "stiffness"
+    one = replace(FREE, result=Mock(parameters=[row], diagnosis=[cause]))
+    assert one.of_noise("left", "roll", "stiffness") == pytest.approx(4.0 * 0.5)
+    assert one.of_noise("left", "pitch", "stiffness") is None
+
+
 def test_each_rehearsal_has_its_own_draw_of_the_sensors_and_a_floor_for_its_steps() -> None:
     """A floor is told by stiffness k and damping c: a contact that steps of h hold still has c·h of 1, and c² = 4k of
     one that swings no more."""

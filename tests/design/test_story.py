@@ -82,6 +82,10 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     page = written.with_suffix(".md").read_text()
     assert "Delay of the force sensors: " in page
     assert "The search wanted: stiffness within 0.5 %" in page
+    assert "`--duration 80` leaves 50 % of it" in page
+    for row in content["parameters"]:
+        widest = max((one["half_width_percent"] or 0.0 for one in row["at"]), default=0.0)
+        assert row["noise_percent"] is None or 0.0 < row["noise_percent"] <= widest
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
     needed = content["one_foot"]["least_stiffness"]

@@ -25,6 +25,7 @@ from plantar.twin.recording import TwinRecording, record
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.simulation.rollout import Rollout
 
+GO_WITH_TIME: Final = ("noise", "slip angle")  # causes of which a longer motion of this kind leaves less
 DRAWS: Final = 1000  # of the sensors in a unit of the stiffness' factor: each rehearsal has its own
 # s: a rehearsal steps twice as far as the twin, in half the time.
 TIMESTEP: Final = 0.0005
@@ -76,6 +77,16 @@ class Rehearsal:
         if row is None or row.interval95 is None or not row.value:
             return None
         return 50 * (row.interval95[1] - row.interval95[0]) / abs(row.value)
+
+    def of_noise(self, foot: str, axis: str, name: str) -> float | None:
+        """What noise and drift make of that half width [% of the value]: it goes with the root of the duration."""
+        rows = () if self.result is None else self.result.diagnosis
+        own = (row for row in rows if (row.foot, row.axis, row.name) == (foot, axis, name))
+        shares = next((row.variance_shares for row in own), None)
+        half = self.percent(foot, axis, name)
+        if shares is None or half is None:
+            return None
+        return float(half * np.sqrt(sum(shares.get(cause, 0.0) for cause in GO_WITH_TIME)))
 
     def error(self, foot: str, axis: str, name: str, truth: float) -> float | None:
         """By how much a parameter came out too large [% of the `truth` at the stiffness told]."""

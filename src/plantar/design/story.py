@@ -109,6 +109,11 @@ class Design:
             for one, own, beside in zip(self.rehearsals, found, near, strict=True)
         }
 
+    def noise(self, foot: str, axis: str, name: str) -> float | None:
+        """What noise makes of it [% of its value], the worst of all rehearsals; None where none identifies it."""
+        found = [one.of_noise(foot, axis, name) for one in self.rehearsals]
+        return max((own for own in found if own is not None), default=None)
+
     @property
     def nominal(self) -> Rehearsal:
         """The rehearsal at the stiffness that was told."""
