@@ -14,8 +14,8 @@ from plantar.design.family import CHANNELS, SHAPES
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
-# Of which the best end counts: limits have corners in which a way ends. Two cores take as long for three.
-STARTS: Final = 4
+# Of which the best end counts: limits have corners in which a way ends.
+STARTS: Final = 8
 TRIES: Final = 25  # linear programs from each start at most
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
