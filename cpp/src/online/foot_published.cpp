@@ -37,11 +37,7 @@ void FootTracker::publish(int axis) noexcept {
   const auto half_of = [&](const Untold& one) { return std::max(quantile * one.grouped, NORMAL * one.white); };
   const double late_half = half_of(found.late), turned_half = half_of(found.turned);
   const double surely = has_element(*foot_, axis) ? 0.0 : std::max(std::abs(found.late.value) - late_half, 0.0);
-  // An IMU that is late takes off what the body turned meanwhile, at most as much. Where an element does not slip, more
-  // torque hangs on the angle: there the IMU is later than by this at least.
-  const double stiffest = k + (has_element(*foot_, axis) ? found.value[SLIP_TORQUE] / slip_angle_[axis] : 0.0);
-  const double turned = stiffest > 0.0 ? std::max(std::abs(found.turned.value) - turned_half, 0.0) / stiffest : 0.0;
-  const double late = std::hypot(std::hypot(delay_std_, SKEW * period_, surely), turned);
+  const double late = std::hypot(delay_std_, SKEW * period_, surely);
   out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * found.by_late[STIFFNESS]));
   out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * found.by_late[DAMPING]));
   out.slip_torque =
@@ -59,6 +55,8 @@ void FootTracker::publish(int axis) noexcept {
   const bool modelled = has_element(*foot_, axis) || foot_->linear[axis] || memories_[axis].excluded();
   const bool shows = modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS;
   late_[axis] = shows ? Lateness::of(found.late.value, late_half) : Lateness{};
+  // Where an element does not slip, more torque hangs on the angle: there the IMU is later than by this at least.
+  const double stiffest = k + (has_element(*foot_, axis) ? found.value[SLIP_TORQUE] / slip_angle_[axis] : 0.0);
   late_imu_[axis] = shows && sure ? Lateness::of(found.turned.value / stiffest, turned_half / stiffest) : Lateness{};
   out.identified = sure && tested && !memories_[axis].seen() && !told_late_;
   const auto tell = [this](std::uint32_t flag, bool holds) {
