@@ -82,11 +82,9 @@ class Rehearsal:
         """What noise and drift make of that half width [% of the value]: it goes with the root of the duration."""
         rows = () if self.result is None else self.result.diagnosis
         own = (row for row in rows if (row.foot, row.axis, row.name) == (foot, axis, name))
-        shares = next((row.variance_shares for row in own), None)
-        half = self.percent(foot, axis, name)
-        if shares is None or half is None:
-            return None
-        return float(half * np.sqrt(sum(shares.get(cause, 0.0) for cause in GO_WITH_TIME)))
+        shares = next((row.variance_shares for row in own), {})
+        share, half = sum(shares.get(cause, 0.0) for cause in GO_WITH_TIME), self.percent(foot, axis, name)
+        return float(half * np.sqrt(share)) if share > 0 and half is not None else None
 
     def error(self, foot: str, axis: str, name: str, truth: float) -> float | None:
         """By how much a parameter came out too large [% of the `truth` at the stiffness told]."""
