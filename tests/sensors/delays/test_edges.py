@@ -118,15 +118,23 @@ def test_delays_that_need_not_differ_go_together_first(monkeypatch: pytest.Monke
     assert far is None, "later than 50 ms is another fault"
 
 
-def refined(std: float, closed: int = 1, suspect: bool = False, value: float = 0.0) -> RefinedDelays:
+def refined(
+    std: float, closed: int = 1, suspect: bool = False, value: float = 0.0, differ: bool = False
+) -> RefinedDelays:
     mask = np.arange(2) < closed
-    return RefinedDelays(np.array([value, value, 0.0]), std, 20.0, False, False, mask, 0.005, suspect)
+    return RefinedDelays(np.array([value, value, 0.0]), std, 20.0, differ, False, mask, 0.005, suspect)
 
 
-def test_of_two_answers_the_unsuspected_then_the_wider_then_the_sharper_is_surer() -> None:
-    order = [refined(0.1, 1, suspect=True), refined(0.2, 1), refined(0.1, 1), refined(0.5, 2)]
+def test_of_two_answers_the_unsuspected_then_the_wider_then_the_apart_then_the_sharper_is_surer() -> None:
+    order = [
+        refined(0.1, 1, suspect=True),
+        refined(0.2, 1),
+        refined(0.1, 1),
+        refined(0.3, 1, differ=True),
+        refined(0.5, 2),
+    ]
     for place, one in enumerate(order):
-        assert [_surer(one, other) for other in order] == [other < place for other in range(4)]
+        assert [_surer(one, other) for other in order] == [other < place for other in range(len(order))]
 
 
 def lags(
