@@ -101,7 +101,7 @@ VERDICTS = (
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "a jump across a lift counts",
-        "int(np.argmax(np.where(same, apart, 0.0)))", "int(np.argmax(apart))",
+        "far = np.where(same, apart, 0.0) > FAR", "far = apart > FAR",
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "any jump is worth a warning",
