@@ -104,15 +104,15 @@ def _starts(block: Block, recordings: Sequence[Recording], fit: AxisFit, left: M
 
 
 class _Jump(NamedTuple):
-    """Its moment [s], or the first of `count`, and the squares that are `left` of the misfit beside all."""
+    """Its moment [s], or the first of so many `times`, and the squares that are `left` of the misfit beside all."""
 
     time: float
-    count: int
+    times: int
     left: float
 
     @property
     def more(self) -> str:
-        return f", the first of {self.count} times" if self.count > 1 else ""
+        return f", the first of {self.times} times" if self.times > 1 else ""
 
 
 def _jumps(
