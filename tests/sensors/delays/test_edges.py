@@ -108,6 +108,16 @@ def test_what_is_known_to_three_milliseconds_is_ground_for_delays_of_their_own(
     assert (found.suspect, found.encoders_differ) == (suspect, not suspect)
 
 
+@pytest.mark.parametrize(("apart", "suspect"), [(0.0146, False), (0.0156, True)])
+def test_three_deviations_of_what_is_not_known_well_are_ground_for_a_search(
+    monkeypatch: pytest.MonkeyPatch, apart: float, suspect: bool
+) -> None:
+    """Encoders 100 ms late look 50 ± 14 ms late from none; three times 5 and 0.3 ms are 15.03 ms."""
+    found = stepped(monkeypatch, (0.0, 0.0, apart), 0.005)
+    assert found is not None
+    assert (found.suspect, found.encoders_differ) == (suspect, False)
+
+
 def test_delays_that_need_not_differ_go_together_first(monkeypatch: pytest.MonkeyPatch) -> None:
     found = stepped(monkeypatch, (-0.002, 0.002, 0.0), 1e-6, at=(0.006, 0.002, 0.0))
     assert found is not None

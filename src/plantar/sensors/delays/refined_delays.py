@@ -29,6 +29,9 @@ from plantar.signals.resampling import shifted
 ROUNDS = 6
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
+SUSPECT = (
+    3.0  # likewise, for steps from elsewhere to be tried, where it is not known well by how much they differ
+)
 LEAST_DISTINCT = 0.0015  # s, and by so much
 WELL_KNOWN = 0.003  # s: differences less well known than this are no ground for delays of their own
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
@@ -134,8 +137,9 @@ def _step(
         apart = contrasts @ (at + free.values)
         variance = np.diag(contrasts @ free.covariance @ contrasts.T)
         spread = np.sqrt(variance + LEAST_STD**2)
-        seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
-        differ, suspect = seem & (spread < WELL_KNOWN), bool((seem & (spread >= WELL_KNOWN)).any())
+        well = spread < WELL_KNOWN
+        seem = np.abs(apart) > np.maximum(np.where(well, DISTINCT, SUSPECT) * spread, LEAST_DISTINCT)
+        differ, suspect = seem & well, bool((seem & ~well).any())
         differ[:-1] = differ[:-1].any()
         # What is known no better than by what is usual moves nothing; nor does anything beside what is much, not known.
         known = (spread < APART) & (not suspect)
