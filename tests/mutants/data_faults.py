@@ -25,6 +25,10 @@ DATA_FAULTS = (
         "fit_blocks(blocks).values[RATE]) < 0.0", ("feet/assess/test_late_recordings.py",),
     ),
     Mutant(
+        "feet/assess/late_recordings.py", "halves of walks that hardly differ are a fault",
+        "2 * NORMAL95 * wide.std[RATE]", "0.0", ("feet/assess/test_late_recordings.py",),
+    ),
+    Mutant(
         "feet/assess/late_recordings.py", "a memory is a late recording",
         "fit_blocks(tangent).squares < found.squares", "fit_blocks(tangent).squares < 0.0",
         ("feet/assess/test_late_recordings.py",),

@@ -2,7 +2,8 @@
 
 Delays are found from the ground's wrench where nobody holds the robot. A recording in which somebody does may have
 another one, and only its damping tells: a delay d takes K·d off it. The fit of all then lies somewhere between the
-recordings, by more than its interval, or a memory is made up for what they disagree in.
+recordings, by more than its interval, or a memory is made up for what they disagree in. Of walks it may be so within a
+recording: where a part of one does not follow from Newton's law, as if somebody pushed, the other part tells the delay.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from plantar.notes import Note
 
 RECORDING_LATE = "recording_late"
 SURE = 5.0  # deviations by which a recording's damping must differ, as delays of logs that show them
+FEWEST = 8  # stances of a recording: four say how much they scatter
 RATE = 1  # the place of the rate, and of damping, in spring and damper
 
 
@@ -30,9 +32,12 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
 
     tangent: the recordings' `tangent_blocks`, whose torque is about the place that the fit has found: about another,
     motions about the other axis show as damping. Where a memory leaves less than a damping of its own does, it is the
-    memory that makes damping differ. Not of a foot that steps: landings shake its damping more than delays do.
+    memory that makes damping differ. Of a foot that steps, whose landings shake its damping more than delays do, the
+    halves of each recording are compared: they have the same landings.
     """
-    if tangent[0].stances is not None or shared or len(tangent) < 2:
+    if tangent[0].stances is not None:
+        return _late_halves(wide, tangent)
+    if shared or len(tangent) < 2:
         return []
     blocks = [_spring_and_damper(block) for block in tangent]
     sureness = sureness_of_own(blocks, RATE)
@@ -51,6 +56,38 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
         "the IMU than theirs. Record it again with clocks and filters as in the others, or leave it out"
     )
     return [Note(RECORDING_LATE, "warning", text)]
+
+
+def _late_halves(wide: AxisFit, tangent: Sequence[Block]) -> list[Note]:
+    """The same of the halves of all recordings of a foot that steps."""
+    told = [_halves(block) for block in tangent if block.stances and len(block.stances.split()) >= FEWEST]
+    if not told:
+        return []
+    apart, variance = np.transpose(told)
+    weights = 1 / np.maximum(variance, np.finfo(float).tiny)
+    mean, std = float(weights @ apart / weights.sum()), float(1 / np.sqrt(weights.sum()))
+    # Half of it is how far the damping of both together is from that of either.
+    if abs(mean) < max(SURE * std, 2 * NORMAL95 * wide.std[RATE]):
+        return []
+    late = -1e3 * mean / wide.values[0]
+    text = (
+        f"{wide.foot} {wide.axis}: damping is {mean:+.3g} N.m.s/rad in the second halves of the recordings beside the "
+        f"first, as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} there against the "
+        "IMU. Find the moment at which a clock or driver changed, and cut the recordings there"
+    )
+    return [Note(RECORDING_LATE, "warning", text)]
+
+
+def _halves(block: Block) -> tuple[float, float]:
+    """By how much more the second half of a recording's stances damps than the first, and its variance."""
+    assert block.stances is not None, "a block of a foot that steps"
+    stances = block.stances.split()
+    first, second = (
+        fit_blocks([block.part(np.sort(np.concatenate(half)))])
+        for half in (stances[: len(stances) // 2], stances[len(stances) // 2 :])
+    )
+    variance = float(first.std[RATE] ** 2 + second.std[RATE] ** 2)
+    return float(second.values[RATE] - first.values[RATE]), variance
 
 
 def _spring_and_damper(block: Block) -> Block:
