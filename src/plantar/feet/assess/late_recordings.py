@@ -72,8 +72,8 @@ def _late_halves(wide: AxisFit, tangent: Sequence[Block]) -> list[Note]:
     late = -1e3 * mean / wide.values[0]
     text = (
         f"{wide.foot} {wide.axis}: damping is {mean:+.3g} N.m.s/rad in the second halves of the recordings beside the "
-        f"first, as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} there against the "
-        "IMU. Find the moment at which a clock or driver changed, and cut the recordings there"
+        f"first, as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} there against "
+        "the IMU. Find the moment at which a clock or driver changed, and cut the recordings there"
     )
     return [Note(RECORDING_LATE, "warning", text)]
 
