@@ -102,7 +102,9 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
         for kind, turned, its_rate in (("gain", angle, rate), ("late", rate, slope)):
             torque = fit.values[0] * turned[rows] + fit.values[1] * its_rate[rows]
             columns[joint, kind] = own * np.nan_to_num(torque)
-    return columns
+    # One bus often reads all joints of a leg.
+    late = [column for (_, kind), column in columns.items() if kind == "late"]
+    return columns | {(f"all joints to the {fit.foot} foot", "late"): np.sum(late, axis=0)}
 
 
 def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:
