@@ -16,6 +16,8 @@ import numpy as np
 from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks
 from plantar.estimation.least_squares import sureness_of_own
+from plantar.estimation.linear import fits_of_halves
+from plantar.estimation.weighted_mean import weighted_mean
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import beside
 from plantar.models import BESIDE, KelvinVoigt
@@ -24,6 +26,7 @@ from plantar.notes import Note
 RECORDING_LATE = "recording_late"
 SURE = 5.0  # deviations by which a recording's damping must differ, as delays of logs that show them
 FEWEST = 8  # stances of a recording: four say how much they scatter
+TINY = 1e-9  # N.m.s/rad: exact logs have no deviation
 RATE = 1  # the place of the rate, and of damping, in spring and damper
 
 
@@ -60,34 +63,27 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
 
 def _late_halves(wide: AxisFit, tangent: Sequence[Block]) -> list[Note]:
     """The same of the halves of all recordings of a foot that steps."""
-    told = [_halves(block) for block in tangent if block.stances and len(block.stances.split()) >= FEWEST]
-    if not told:
+    halves = [
+        fits_of_halves(block)
+        for block in tangent
+        if block.stances is not None and len(block.stances.split()) >= FEWEST
+    ]
+    if not halves:
         return []
-    apart, variance = np.transpose(told)
-    weights = 1 / np.maximum(variance, np.finfo(float).tiny)
-    mean, std = float(weights @ apart / weights.sum()), float(1 / np.sqrt(weights.sum()))
+    apart = weighted_mean(
+        [last.values[RATE] - first.values[RATE] for first, last in halves],
+        [max(np.hypot(first.std[RATE], last.std[RATE]), TINY) for first, last in halves],
+    )
     # Half of it is how far the damping of both together is from that of either.
-    if abs(mean) < max(SURE * std, 2 * NORMAL95 * wide.std[RATE]):
+    if abs(apart.value) < max(SURE * apart.std, 2 * NORMAL95 * wide.std[RATE]):
         return []
-    late = -1e3 * mean / wide.values[0]
+    late = -1e3 * apart.value / wide.values[0]
     text = (
-        f"{wide.foot} {wide.axis}: damping is {mean:+.3g} N.m.s/rad in the second halves of the recordings beside the "
-        f"first, as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} there against "
-        "the IMU. Find the moment at which a clock or driver changed, and cut the recordings there"
+        f"{wide.foot} {wide.axis}: damping is {apart.value:+.3g} N.m.s/rad in the second halves of the recordings "
+        f"beside the first, as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} there "
+        "against the IMU. Find the moment at which a clock or driver changed, and cut the recordings there"
     )
     return [Note(RECORDING_LATE, "warning", text)]
-
-
-def _halves(block: Block) -> tuple[float, float]:
-    """By how much more the second half of a recording's stances damps than the first, and its variance."""
-    assert block.stances is not None, "a block of a foot that steps"
-    stances = block.stances.split()
-    first, second = (
-        fit_blocks([block.part(np.sort(np.concatenate(half)))])
-        for half in (stances[: len(stances) // 2], stances[len(stances) // 2 :])
-    )
-    variance = float(first.std[RATE] ** 2 + second.std[RATE] ** 2)
-    return float(second.values[RATE] - first.values[RATE]), variance
 
 
 def _spring_and_damper(block: Block) -> Block:

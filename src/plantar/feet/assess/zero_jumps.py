@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
@@ -24,7 +23,8 @@ from plantar.feet.regression.model_columns import model_columns
 from plantar.feet.regression.regression_data import beside, blocks_of, recordings_of, tangent_blocks
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
-from plantar.signals.segments import run_numbers, runs
+from plantar.signals.mean_changes import mean_changes
+from plantar.signals.segments import run_numbers
 
 BESIDE, BRIEF = 1.0, 0.3  # s before and after a moment, over which means are compared
 FAR = 8.0  # times the usual difference of two such means
@@ -124,33 +124,15 @@ def _jumps(
         missed = whole.residuals[block.label]
         places = np.flatnonzero(recording.rows(foot))
         contact = recording.contacts[foot]
-        # A jump may look like a slide, but not like a sole that tips, and then may come to lie otherwise.
+        # A foot that was lifted or has tipped meanwhile stands elsewhere. What jumps may look like a slide.
         stands = run_numbers(contact.loaded & ~contact.left_out_for(TIPPING))[places]
         for seconds, most, share in ((BESIDE, 1, EXPLAINS), (BRIEF, len(missed), NEARLY_ALL)):
-            rows = sorted(_changes(missed, stands, max(1, round(seconds / block.period)))[:most])
+            rows = sorted(mean_changes(missed, stands, max(1, round(seconds / block.period)), FAR)[:most])
             left = _left_beside(missed, rows, block, share) if rows else None
             if left is not None:
                 found[block.label] = _Jump(float(recording.time[places[rows[0]]]), len(rows), left)
                 break
     return found
-
-
-def _changes(missed: Array, stands: NDArray[np.intp], width: int) -> list[int]:
-    """The rows of `missed` (n,) about which its mean over `width` rows changes far more than it usually does, by size.
-
-    stands: (n,), the number of the stance: a foot that was lifted or tipped meanwhile stands elsewhere.
-    """
-    if len(missed) < 6 * width:
-        return []
-    until = np.concatenate([[0.0], np.cumsum(missed)])
-    means = (until[width:] - until[:-width]) / width
-    apart = np.abs(means[width:] - means[:-width])
-    same = stands[2 * width - 1 :] == stands[: len(stands) - 2 * width + 1]
-    if not same.any():
-        return []
-    far = np.where(same, apart, 0.0) > FAR * float(np.median(apart[same]))
-    tops = [run.start + int(np.argmax(apart[run])) for run in runs(far)]
-    return [top + width for top in sorted(tops, key=lambda top: -apart[top])]
 
 
 def _left_beside(missed: Array, rows: Sequence[int], block: Block, share: float = EXPLAINS) -> float | None:
