@@ -45,6 +45,22 @@ void a_fault_is_told_and_soon_over() {
   }
 }
 
+// A chest that turns by 3 mrad/s at most: at no moment does that say anything of the gyroscope, twenty seconds do. One
+// with a zero of its own follows the turns all the same.
+void small_turns_add_up() {
+  for (const double gain : {0.0, -1.0, 1.0}) {
+    TurnWatch watch;
+    double told = 0.0;
+    for (int i = 0; i < 8000; ++i) {
+      const double time = PERIOD * i, angle = 5e-4 * std::sin(PACE * time), noise = 2e-5 * std::sin(1e5 * i);
+      const double rate[3] = {0.01, gain * 5e-4 * PACE * std::cos(PACE * (time - 0.5 * PERIOD)), 0.0};
+      const bool differ = watch.differ({-std::sin(angle) + noise, 0.0, std::cos(angle)}, rate, PERIOD);
+      if (time > 20.0) told += differ / 4000.0;
+    }
+    check::that(gain == 1.0 ? told == 0.0 : told > 0.99, "a gyroscope that follows no turn, however small");
+  }
+}
+
 // A joint that has stood while its twin moved, and moved again, may stand as long again.
 void what_has_stood_and_moved_again_is_not_doubted() {
   JointWatch one, twin;
@@ -63,5 +79,6 @@ void what_has_stood_and_moved_again_is_not_doubted() {
 int main() {
   what_has_stood_and_moved_again_is_not_doubted();
   a_fault_is_told_and_soon_over();
+  small_turns_add_up();
   return check::result();
 }

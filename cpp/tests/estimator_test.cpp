@@ -151,6 +151,15 @@ void small_motions_exclude_no_memory() {
   swing = 1.0;
 }
 
+// A clock that steps back each half second: between its steps nothing is learnt.
+void a_clock_that_steps_again_and_again_teaches_nothing() {
+  FootEstimator estimator(two_feet());
+  FootEstimate last;
+  for (int i = 0; i < 12000; ++i) last = estimator.step(Sensors(5e-3 * i).reading(5e-3 * i - 0.2 * (i / 100)))[0];
+  check::that((last.flags & TIME_FAULT) && (last.flags & PITCH_UNKNOWN), "no number, and the clock is named");
+  check::that(std::abs(last.pitch.deflection - angle(0, 5e-3 * 11999)) < 1e-8, "how the bush is bent does not hang on it");
+}
+
 void a_foot_that_never_stands() {
   FootEstimator estimator(two_feet());
   FootEstimate last;
@@ -238,6 +247,7 @@ int main() {
   notices_other_ground();
   notices_a_memory();
   small_motions_exclude_no_memory();
+  a_clock_that_steps_again_and_again_teaches_nothing();
   a_foot_that_never_stands();
   broken_models_are_refused();
   return check::result();

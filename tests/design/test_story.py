@@ -82,6 +82,10 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     page = written.with_suffix(".md").read_text()
     assert "Delay of the force sensors: " in page
     assert "The search wanted: stiffness within 0.5 %" in page
+    assert "`--duration 80` leaves 50 % of it" in page
+    for row in content["parameters"]:
+        widest = max((one["half_width_percent"] or 0.0 for one in row["at"]), default=0.0)
+        assert row["noise_percent"] is None or 0.0 < row["noise_percent"] <= widest
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
     needed = content["one_foot"]["least_stiffness"]
@@ -94,7 +98,7 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
 def test_limits_are_told_with_the_worst_of_the_rehearsals(written: Path) -> None:
     found = design_samples.designed()
     unlike = tuple(
-        replace(one, sole_margin=0.01 + 0.001 * k, friction=0.1 + 0.01 * k, effort=0.8 - 0.1 * k)
+        replace(one, sole_margins=(0.01 + 0.001 * k, 0.05), friction=0.1 + 0.01 * k, effort=0.8 - 0.1 * k)
         for k, one in enumerate(found.rehearsals)
     )
     content = content_of(replace(found, rehearsals=unlike), written, 100.0)

@@ -57,7 +57,11 @@ DESIGNED_MOTIONS = (
         "drift_basis(reach.time)", "drift_basis(reach.time)[:, :1]", QUICK,
     ),
     Mutant(
-        "design/information.py", "rehearsals leave a motion as it is", "LEFT * coefficients", "coefficients", QUICK,
+        "design/story.py", "what fails far from its limit keeps its share",
+        "change * np.minimum(shares, foretold)", "change * shares", ("design/test_rehearsals.py",),
+    ),
+    Mutant(
+        "design/information.py", "a model that knows every amplitude", "MODEL_ERROR**2 /", "0 * MODEL_ERROR /", QUICK,
     ),
     Mutant(
         "design/information.py", "more than enough counts as what is missing", "ENOUGH * widths", "widths", QUICK,

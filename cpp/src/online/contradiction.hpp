@@ -22,6 +22,8 @@ constexpr double TURNS_SURE = 1.8;     // times that, at once: 0.9 of the larger
 constexpr double LEAST_SURE = 0.03;    // rad/s
 constexpr double FASTEST_TURN = 1.5;   // rad/s: no chest over standing feet turns faster; larger readings echo no longer
 constexpr double ZERO_TIME = 20.0;     // s in which a gyroscope's zero is learnt, and a usual load
+constexpr double SEEN_TURN = 2.0;      // times the attitude's noise, mean squares over that time: a turn that is small
+constexpr double TOGETHER_TIME = 2.0;  // s without which nothing is said of it
 constexpr double ZERO_NEWS = 0.02;     // rad/s: the most that one reading says of it
 constexpr double LOAD_TIME = 0.4;      // s over which the feet's load is compared: a step's accelerations cancel
 constexpr double LOAD_DIFFERS = 0.15;  // of the weight: a step's rest is less
@@ -36,7 +38,7 @@ class TurnWatch {
   using Vector = std::array<double, 3>;
 
   void restart() noexcept {
-    known_ = false, share_ = 0.0, filtered_ = {};
+    known_ = false, share_ = 0.0, filtered_ = {}, followed_ = {};
     for (WhiteNoise& noise : noise_) noise.restart();
   }
 
@@ -59,7 +61,7 @@ class TurnWatch {
     age_ += dt;
     const double edge = 2.0 * std::numbers::pi * TURN_BAND, pass = one_pole(dt, 1.0 / edge);
     const double learnt = std::max(one_pole(dt, ZERO_TIME), dt / age_);
-    double attitude = 0.0, gyroscope = 0.0, between = 0.0;  // squares
+    double attitude = 0.0, gyroscope = 0.0, between = 0.0, without_zero = 0.0, common = 0.0;  // squares
     for (int i = 0; i < 3; ++i) {
       const double told[2] = {(up[i] - before[i]) / dt, by_rate[i]};
       for (int a = 0; a < 2; ++a)
@@ -68,16 +70,38 @@ class TurnWatch {
       zero_[i] += learnt * std::clamp(differs, -ZERO_NEWS, ZERO_NEWS);
       attitude += filtered_[0][i] * filtered_[0][i], gyroscope += filtered_[1][i] * filtered_[1][i];
       between += differs * differs;
+      const double turns = filtered_[1][i] + zero_[i];
+      without_zero += turns * turns, common += turns * filtered_[0][i];
     }
-    const double noise = TURN_NOISE * TURN_NOISE * edge * edge * variance;
+    const double white = edge * edge * variance, noise = TURN_NOISE * TURN_NOISE * white;
     const double turns = TURNS_DIFFER * TURNS_DIFFER * std::max(attitude, gyroscope);
     const double likely = std::max({LEAST_TURN * LEAST_TURN, noise, turns});
+    if (between <= likely) followed_.see(attitude - white, without_zero, common, dt);
     share_ = std::min(share_ + one_pole(dt, TURN_TIME) * ((between > likely) - share_), MOST_SHARE);
-    return share_ > TURN_SHARE || between > TURNS_SURE * TURNS_SURE * std::max(likely, LEAST_SURE * LEAST_SURE);
+    return share_ > TURN_SHARE || followed_.apart(white) ||
+           between > TURNS_SURE * TURNS_SURE * std::max(likely, LEAST_SURE * LEAST_SURE);
   }
 
  private:
+  // Mean squares of both turns, and of what they have in common, over ZERO_TIME: turns that are too small to say
+  // anything at once add up; those that do are told anyway.
+  struct Followed {
+    double age = 0.0, attitude = 0.0, gyroscope = 0.0, common = 0.0;
+
+    void see(double by_attitude, double by_gyroscope, double both, double dt) noexcept {
+      age += dt;
+      const double news = std::max(one_pole(dt, ZERO_TIME), dt / age);
+      attitude += news * (by_attitude - attitude), gyroscope += news * (by_gyroscope - gyroscope);
+      common += news * (both - common);
+    }
+    bool apart(double white) const noexcept {
+      const double larger = std::max(attitude, gyroscope);
+      return age > TOGETHER_TIME && larger > SEEN_TURN * white && common < TURNS_DIFFER * larger;
+    }
+  };
+
   bool known_ = false;
+  Followed followed_;
   double age_ = 0.0, share_ = 0.0;
   Vector up_ = {}, zero_ = {};
   std::array<Vector, 2> filtered_ = {};  // what attitude and gyroscope tell

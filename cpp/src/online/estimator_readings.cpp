@@ -10,6 +10,8 @@ namespace {
 
 constexpr double GAP = 0.1;  // s without a sample, at least: what was before is past
 constexpr double GAP_PERIODS = 5.0;
+constexpr double CLOCK_STEADY = 5.0;  // s without a jump: one that comes later is another recording, not a clock's fault
+constexpr double CLOCK_DOUBT = 0.9;   // s behind one that comes sooner, in which nothing is learnt
 constexpr double PERIOD_NEWS = 0.05;  // by how much one tick changes the period
 constexpr double UNREAD = LARGEST;    // stands for a position that the last tick did not have
 
@@ -22,12 +24,13 @@ FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept 
   if (!first && passed == 0.0) return Time::still;
   time = now;
   if (first || passed < 0.0 || passed > std::max(GAP, GAP_PERIODS * period)) {
-    ticks = 1, known = false;
+    clock_doubt = first || steady > CLOCK_STEADY ? 0.0 : CLOCK_DOUBT;
+    ticks = 1, known = false, steady = 0.0;
     slip.restart(), filter.restart(), turn_watch.restart(), weight_watch.restart();
     for (JointWatch& watch : joint_watch) watch.restart();
     return first ? Time::onward : Time::jumped;
   }
-  dt = passed;
+  dt = passed, steady += dt, clock_doubt = std::max(clock_doubt - dt, 0.0);
   period = ticks == 1 ? dt : period + PERIOD_NEWS * (dt - period);
   ++ticks;
   return Time::onward;

@@ -59,6 +59,7 @@ struct FootEstimator::State {
   std::vector<bool> was_bad;
   std::vector<FootEstimate> estimates;
   double time = 0.0, dt = 0.0, period = 0.0;
+  double steady = 0.0, clock_doubt = 0.0;  // s since time jumped, and for which nothing is learnt, as it did again
   int ticks = 0;       // since time last jumped
   bool known = false;  // whether a quaternion and positions of an earlier tick are kept
   int next_work = 0;

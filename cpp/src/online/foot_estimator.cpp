@@ -167,14 +167,18 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
       const bool late = foot_delay_watch[f].late(feet[f].lateness(), model.wrench_delay_std, period) || all_late;
-      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late, late_imu, encoder_doubtful(f)},
-                    begun, time, dt, period);
+      const bool still = encoder_doubtful(f) || clock_doubt > 0.0;
+      feet[f].learn(motion[f], total - feet[f].load(),
+                    {slips, contradiction, late, late_imu, still}, begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;
   }
   known = true;
   watch_ground();
-  for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
+  for (std::size_t f = 0; f < feet.size(); ++f) {
+    estimates[f] = feet[f].estimate();
+    if (clock_doubt > 0.0) estimates[f].flags |= TIME_FAULT;
+  }
 }
 
 FootEstimator::FootEstimator(const EstimatorModel& model) : state_(std::make_unique<State>(model)) {}

@@ -50,7 +50,7 @@ class FootTracker {
     SlipGate::Verdict slips;
     bool contradiction;
     bool late, late_imu;
-    bool still;  // an encoder that may be frozen
+    bool still;  // an encoder that may be frozen, a clock that jumps
   };
   // Contact, and what this tick teaches. others: load of the other feet; fresh: the tick before was read as well, `dt`
   // earlier.

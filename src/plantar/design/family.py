@@ -32,10 +32,10 @@ LINES: Final = 2  # sines of each channel
 SHAPES: Final = 1 + 2 * LINES  # of each channel: a place to be at, and the sine and cosine of each line
 # Hz, lowest and highest line of a channel. A foot is told its damping by what is quick, its stiffness by what is large;
 # above 1.2 Hz joints and servos of large robots follow badly, and `identify feet` listens up to 5 Hz. The load is led
-# from foot to foot slowly. Arms and trunk swing at 0.3 to 1 Hz, and the body goes up and down: from that the delay of
-# the sensors shows.
+# from foot to foot slowly. Arms and trunk swing at 0.3 to 1 Hz, and the body goes up and down by some millimetres, as
+# quickly as legs do: from that the delay of the sensors shows.
 BANDS: Final = {
-    "centre.x": (0.1, 0.6), "centre.y": (0.1, 0.6), "centre.z": (0.3, 1.2), "trunk.roll": (0.3, 1.0),
+    "centre.x": (0.1, 0.6), "centre.y": (0.1, 0.6), "centre.z": (0.6, 2.4), "trunk.roll": (0.3, 1.0),
     "trunk.pitch": (0.3, 1.0), "arms": (0.3, 1.0), "left.roll": (0.1, 1.2), "left.pitch": (0.1, 1.2),
     "right.roll": (0.1, 1.2), "right.pitch": (0.1, 1.2),
 }  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
 from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
+from plantar.estimation.delays.delay import MODEL_ERROR
 from plantar.estimation.slow_drift import drift_basis
 
 Criterion = Literal["widest", "D", "A"]
@@ -20,16 +21,14 @@ MISSED: Final = 0.1
 # widths grow.
 TOLD_APART: Final = 1.4 * SLIP_ANGLE
 STEEP: Final = 8
-# Share of a motion that rehearsals leave: joints give way under load, of which limits that are linear know nothing.
-LEFT: Final = 0.87
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
 WANTED: Final = (0.005, 0.04)
 WANTED_DELAY: Final = 0.001
 WANTED_VERTICAL: Final = 0.3
-# N·m by which Newton's law misses the moments on the ground, per independent sample of 0.1 s, with a careful lab's
-# sensors and masses.
-UNCLOSED: Final = 0.2
+# By which Newton's law misses the vertical force [N] and the moments [N·m] on the ground, per independent sample of
+# 0.1 s, with a careful lab's sensors and masses.
+UNCLOSED: Final = (0.4, 0.2, 0.2)
 # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push.
 SEEN_FORCE: Final = 6.0
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
@@ -90,12 +89,17 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
 
 
 def delay_half_width(reach: Reach, coefficients: Array) -> Array:
-    """95 % half widths (...) [s] of the force sensors' delay: Newton's law shows it where the moments on the ground
-    change, and forces are large enough to see that it holds."""
-    rates, forces = reach.of(reach.moment_rates, coefficients), reach.of(reach.forces, coefficients)
+    """95 % half widths (...) [s] of the force sensors' delay: Newton's law shows it where vertical force and moments on
+    the ground change, and forces are large enough to see that it holds. What any model misses of their amplitude looks
+    like a delay as long as that takes: the quicker the motion, the less."""
+    forces, rates = reach.of(reach.forces, coefficients), reach.of(reach.wrench_rates, coefficients)
     closed = np.minimum(np.mean(np.sum(forces**2, axis=-2), axis=-1) / SEEN_FORCE**2, 1.0)
-    shown = closed**STEEP * np.sum(rates**2, axis=(-2, -1)) * 10.0 / RATE / UNCLOSED**2
-    return np.asarray(NORMAL95 * np.sqrt(1.0 / (shown + 1.0 / USUAL_DELAY**2)))
+    rates = rates / np.array(UNCLOSED)[:, None]
+    square = np.sum(rates**2, axis=(-2, -1))
+    quick = np.sum(np.gradient(rates, 1 / RATE, axis=-1) ** 2, axis=(-2, -1)) / np.maximum(square, 1e-12)
+    shown = closed**STEEP * square * 10.0 / RATE
+    variance = 1 / np.maximum(shown, 1e-12) + MODEL_ERROR**2 / np.maximum(quick, 1e-12)
+    return np.asarray(NORMAL95 * np.sqrt(1.0 / (1.0 / variance + 1.0 / USUAL_DELAY**2)))
 
 
 def vertical_half_width(reach: Reach, coefficients: Array) -> Array:
@@ -112,13 +116,11 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     The mean over the range of stiffness: the logarithm of the widest interval, each as a multiple of what is wanted of
     it, of the volume of all (D) or of their mean square (A).
 
-    Widths are those of the motion that rehearsals leave, a little smaller. Beside the widest, what is narrower than
-    wanted counts little.
+    Beside the widest, what is narrower than wanted counts little.
     Small soles cannot bend stiff feet far enough for every number. One that is out of reach must not be all that
     counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
     are `known` from before, what is weak comes first.
     """
-    coefficients = LEFT * coefficients
     feet = half_widths(reach, coefficients, known) / WANTED
     feet = feet.reshape(*feet.shape[:-3], -1)
     vertical = vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL

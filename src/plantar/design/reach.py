@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from copy import copy
 from typing import Final
 
 import numpy as np
 
 from plantar.contact.polygon import convex_hull
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY, Array, Mask
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot, internal_forces
@@ -16,7 +17,8 @@ from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 from plantar.twin.presets import DEFAULT, preset_named
 
-RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
+RATE: Final = 20.0  # Hz: eight samples in the quickest sine
+FINER: Final = 2  # times: of what is differentiated
 EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
 SMALLER_EDGE: Final = 0.2  # of a sole's half width at most: small feet need some room to be excited
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
@@ -30,6 +32,9 @@ LARGEST: Final = {
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
 _SIDES: Final = np.column_stack([trig(2 * np.pi * np.arange(SIDES) / SIDES) for trig in (np.cos, np.sin)])
+STILL: Final = 1e-9  # of a channel's limit: that one stays at rest
+# Of what each bush is limited by: centres of pressure at the ends and at the sides of soles, friction, load, bend.
+KINDS: Final = ("ends", "sides", "friction", "load", "bend")
 NEAR: Final = 0.8  # of a limit: what a step of the search watches from the start
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 
@@ -39,8 +44,8 @@ class Reach:
 
     What one unit of each coefficient does: `deflection` [rad] and `rate` [rad/s] (size, S, feet, 2, N) in pitch and
     roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate` where rubber that slips stands
-    beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and `moment_rates` (size, 2, N) of the
-    moments about x and y [N·m/s].
+    beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and `wrench_rates` (size, 3, N), of the
+    vertical force [N/s] and of the moments about x and y [N·m/s].
     Limits hold for the plain springs, with what slips added to their torques; intervals come from the others.
     """
 
@@ -53,9 +58,13 @@ class Reach:
             tuple(bushes),
             tuple(legs.bushes),
         )
-        self._basis = lines.basis(self.time)
-        self._quick = np.gradient(self._basis, 1 / RATE, axis=-1)
-        wrench = robot.wrench(self._basis, np.gradient(self._quick, 1 / RATE, axis=-1))
+        fine, period = lines.basis(lines.time(FINER * RATE)), 1 / (FINER * RATE)
+        quick = np.gradient(fine, period, axis=-1)
+        asked = robot.wrench(fine, np.gradient(quick, period, axis=-1))
+        changed = np.gradient(asked[:, 2:5], period, axis=-1)
+        self._basis, self._quick, wrench, self.wrench_rates = (
+            np.ascontiguousarray(one[..., ::FINER]) for one in (fine, quick, asked, changed)
+        )
         tilts = {
             foot: self._basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
             for foot in self.feet
@@ -82,7 +91,7 @@ class Reach:
         self.firm_deflection, self.firm_rate = parts(SECANT * self.element, "deflection", "rate")
         self.stiffness = np.array([bush.stiffness for bush in bushes])
         self.damping = np.array([bush.damping for bush in bushes])
-        self.forces, self.moment_rates = wrench[:, :3], np.gradient(wrench[:, 3:5], 1 / RATE, axis=-1)
+        self.forces = wrench[:, :3]
         self.vertical = told.vertical
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
@@ -93,17 +102,43 @@ class Reach:
         ]
         bent = self.deflection.reshape(lines.size, -1, self.time.size)
         load = self.load.reshape(lines.size, -1, self.time.size)
-        limits = [
-            (self._basis, np.array(largest), np.array(largest)),
-            *self._joints(legs, robot),
+        own = [(self._basis, np.array(largest), np.array(largest)), *self._joints(legs, robot)]
+        over_bushes = [
             (bent, *2 * (np.full(bent.shape[1], BEND),)),
             (load, np.full(load.shape[1], (1 - LIFT) * self.weight), np.full(load.shape[1], np.inf)),
             *(self._sole(place) for place in range(len(self.feet))),
             *(self._floor(place) for place in range(len(self.feet))),
         ]
-        # What is watched, (size, series, N), and how far each series may go down and up, (series,).
+        towards = [(~ends(normals)).astype(int) for normals, _ in self._edges]
+        kinds = [np.full(1, KINDS.index("bend")), np.full(1, KINDS.index("load")), *towards]
+        kinds += len(self.feet) * [np.full(1, KINDS.index("friction"))]
+        # What is watched, (size, series, N), how far each series may go down and up, (series,), and of which bush
+        # and kind it is, behind all of these where over no bush.
+        limits = [*own, *over_bushes]
         self._watched = np.concatenate([values for values, _, _ in limits], axis=1)
         self._low, self._high = (np.concatenate([one[side] for one in limits]) for side in (1, 2))
+        first = len(KINDS) * np.arange(len(self.bushes))[:, None]
+        groups = [
+            (first + np.resize(kind, low.size // len(first))).ravel()
+            for kind, (_, low, _) in zip(kinds, over_bushes, strict=True)
+        ]
+        others = np.full(sum(low.size for _, low, _ in own), first.size * len(KINDS))
+        self._group = np.concatenate([others, *groups])
+
+    def held(self, shares: Array, others: float = 1.0, still: Collection[str] = ()) -> Reach:
+        """The same with limits of which motions may use `shares` (S, KINDS), of those over no bush `others`. Channels
+        that are to stay `still` have none left."""
+        found, scale = copy(self), np.append(shares, others)[self._group]
+        scale[[CHANNELS.index(channel) for channel in still]] = STILL
+        found._low, found._high = scale * self._low, scale * self._high
+        return found
+
+    def used_by_kind(self, coefficients: Array) -> Array:
+        """How much of its tightest limit of each kind over each bush a motion takes up, (S, KINDS)."""
+        found = np.zeros(len(self.bushes) * len(KINDS) + 1)
+        for side in self._shares(coefficients):
+            np.maximum.at(found, self._group, side.max(axis=1))
+        return found[:-1].reshape(-1, len(KINDS))
 
     def _joints(self, legs: Legs, robot: LinearRobot) -> list[tuple[Array, Array, Array]]:
         """How far each joint goes and how fast, about standing, and how far and fast it may."""
@@ -194,6 +229,11 @@ class Reach:
         edges = [outward(normals, torque[:, place]) for place, (normals, _) in enumerate(self._edges)]
         sides = [self._aside(place, torque) for place in range(len(self.feet))]
         return np.concatenate([one.reshape(-1, bent.shape[-1]) for one in (*edges, *sides)])
+
+
+def ends(normals: Array) -> Mask:
+    """Which edges of a sole, by their normals (n, 2), are its ends, and not its sides."""
+    return np.asarray(np.abs(normals[:, 0]) > np.abs(normals[:, 1]))
 
 
 def margin_kept(polygon: Array) -> float:

@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from plantar.contact.polygon import inside_distance
+from plantar.contact.polygon import edge_distances, edge_normals
 from plantar.conventions import GRAVITY, NORMAL95, Array
+from plantar.design.reach import ends
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
@@ -24,6 +25,7 @@ from plantar.twin.recording import TwinRecording, record
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.simulation.rollout import Rollout
 
+GO_WITH_TIME: Final = ("noise", "slip angle")  # causes of which a longer motion of this kind leaves less
 DRAWS: Final = 1000  # of the sensors in a unit of the stiffness' factor: each rehearsal has its own
 # s: a rehearsal steps twice as far as the twin, in half the time.
 TIMESTEP: Final = 0.0005
@@ -35,8 +37,8 @@ FLOOR: Final = (1e6, 2e3, 0.95)
 class Rehearsal:
     """One rehearsal at `factor` times the stiffness that was told.
 
-    `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m], and
-    `standing_margin` before it moves; `least_load`: of a
+    `sole_margins`: least distance of a foot's centre of pressure from its sole's ends and from its sides [m], and
+    `standing_margins` before it moves; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
     played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `log`: what the
@@ -44,8 +46,8 @@ class Rehearsal:
     """
 
     factor: float
-    sole_margin: float = 0.0
-    standing_margin: float = 0.0
+    sole_margins: tuple[float, float] = (0.0, 0.0)
+    standing_margins: tuple[float, float] = (0.0, 0.0)
     least_load: float = 0.0
     friction: float = 0.0
     effort: float = 0.0
@@ -54,6 +56,11 @@ class Rehearsal:
     bushes: Mapping[str, Array] = field(default_factory=dict, repr=False)
     log: MotionLog | None = field(default=None, repr=False)
     result: FeetResult | None = field(default=None, repr=False)
+
+    @property
+    def sole_margin(self) -> float:
+        """Of a foot's centre of pressure from the border of its sole [m]."""
+        return min(self.sole_margins)
 
     def feet_found(self, robot: RobotModel) -> FeetResult | None:
         """What `identify feet` finds in its recording; None where it finds nothing."""
@@ -70,6 +77,14 @@ class Rehearsal:
         if row is None or row.interval95 is None or not row.value:
             return None
         return 50 * (row.interval95[1] - row.interval95[0]) / abs(row.value)
+
+    def of_noise(self, foot: str, axis: str, name: str) -> float | None:
+        """What noise and drift make of that half width [% of the value]: it goes with the root of the duration."""
+        rows = () if self.result is None else self.result.diagnosis
+        own = (row for row in rows if (row.foot, row.axis, row.name) == (foot, axis, name))
+        shares = next((row.variance_shares for row in own), {})
+        share, half = sum(shares.get(cause, 0.0) for cause in GO_WITH_TIME), self.percent(foot, axis, name)
+        return float(half * np.sqrt(share)) if share > 0 and half is not None else None
 
     def error(self, foot: str, axis: str, name: str, truth: float) -> float | None:
         """By how much a parameter came out too large [% of the `truth` at the stiffness told]."""
@@ -142,15 +157,17 @@ def bush_of(softness: Softness) -> Bush:
 
 def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: TwinRecording) -> Rehearsal:
     truth = recording.truth.columns
-    margin, standing, load, friction, bend = np.inf, np.inf, np.inf, 0.0, 0.0
+    margins, standing = (np.full(2, np.inf) for _ in range(2))
+    load, friction, bend = np.inf, 0.0, 0.0
     weight = robot.mass * GRAVITY / len(robot.feet)
     for name, foot in robot.feet.items():
         pressure = np.column_stack([truth[f"{name}.contact.cop.{axis}"] for axis in "xy"])
         force = np.column_stack([truth[f"{name}.contact.force.{axis}"] for axis in "xyz"])
         carried = np.isfinite(pressure).all(axis=1)
-        inside = inside_distance(pressure[carried], foot.sole.polygon)
-        margin = min(margin, float(inside.min()) if carried.all() else -1.0)
-        standing = min(standing, float(inside[0]) if carried.all() else 0.0)
+        inside, at_ends = edge_distances(pressure, foot.sole.polygon), ends(edge_normals(foot.sole.polygon))
+        inside = np.column_stack([inside[:, own].min(axis=1, initial=np.inf) for own in (at_ends, ~at_ends)])
+        margins = np.minimum(margins, inside.min(axis=0) if carried.all() else -1.0)
+        standing = np.minimum(standing, inside[0] if carried.all() else 0.0)
         load = min(load, float(force[:, 2].min()) / weight)
         sideways = np.linalg.norm(force[:, :2], axis=1) / np.maximum(force[:, 2], 1e-3)
         friction = max(friction, float(sideways.max()))
@@ -163,4 +180,5 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: Twi
         float(np.abs(rollout.efforts[:, place]).max()) / limits[joint]
         for place, joint in enumerate(rollout.joints)
     )
-    return Rehearsal(factor, margin, standing, load, friction, effort, bend, bushes=bushes, log=recording.log)
+    near, at_rest = ((float(side[0]), float(side[1])) for side in (margins, standing))
+    return Rehearsal(factor, near, at_rest, load, friction, effort, bend, bushes=bushes, log=recording.log)

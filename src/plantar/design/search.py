@@ -14,8 +14,8 @@ from plantar.design.family import CHANNELS, SHAPES
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
-# Of which the best end counts: limits have corners in which a way ends. Two cores take as long for three.
-STARTS: Final = 4
+# Of which the best end counts: limits have corners in which a way ends.
+STARTS: Final = 8
 TRIES: Final = 25  # linear programs from each start at most
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
@@ -46,18 +46,29 @@ def best_motion(
     where load, ankles and trunk go together. So each step goes as far down the slope of what is minimised as all
     limits and a box around the motion allow, which is a linear program.
     """
-    units = np.array([1.0 / reach.used(row) for row in np.eye(reach.lines.size)])
-    starts = [_start(random) * units for _ in range(STARTS)]
-
-    def end(start: Array) -> tuple[float, Array]:
-        climb = _Climb(reach, criterion, known, units, start)
-        for _ in range(TRIES):
-            if not climb.step():
-                break
-        return climb.least, climb.best
-
+    starts = [_start(random) / _alone(reach) for _ in range(STARTS)]
     progress(f"search from {STARTS} beginnings")
-    return min(over_cores(end, starts), key=lambda found: found[0])[1]
+    ends = over_cores(lambda start: _end(reach, criterion, start, known), starts)
+    return min(ends, key=lambda found: found[0])[1]
+
+
+def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:
+    """The same from one beginning, a motion that is known, where limits are no longer what they were."""
+    return _end(reach, criterion, start, known)[1]
+
+
+def _end(reach: Reach, criterion: Criterion, start: Array, known: Array | float) -> tuple[float, Array]:
+    """What is minimised where a way through the limits ends, and the motion there."""
+    climb = _Climb(reach, criterion, known, 1.0 / _alone(reach), start)
+    for _ in range(TRIES):
+        if not climb.step():
+            break
+    return climb.least, climb.best
+
+
+def _alone(reach: Reach) -> Array:
+    """What one unit of each coefficient alone uses of the limits, (size,)."""
+    return np.array([reach.used(row) for row in np.eye(reach.lines.size)])
 
 
 def _start(random: np.random.Generator) -> Array:

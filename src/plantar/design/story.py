@@ -13,13 +13,13 @@ from plantar.conventions import Array
 from plantar.cores import blas_on_one_core, over_cores
 from plantar.design.collision import free_swing, self_collision
 from plantar.design.family import Lines
-from plantar.design.information import CRITERIA, LEFT, Criterion
+from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.reach import FRICTION, Reach
+from plantar.design.reach import BEND, FRICTION, KINDS, LIFT, Reach
 from plantar.design.rehearsal import Rehearsal, rehearse
-from plantar.design.search import best_motion
+from plantar.design.search import best_motion, better_motion
 from plantar.design.soft_feet import CARRIED, Softness
 from plantar.design.trajectory import Trajectory
 from plantar.errors import MotionError, SettingsError
@@ -30,18 +30,18 @@ from plantar.twin.play import postures_of
 SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
 # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm.
 KEPT: Final = 0.0055
-# A motion that does not hold is tried again, smaller by half of what it is too large, as centres of pressure run ahead
-# where a sole begins to roll; at most so much smaller.
+# Share of their limits that motions may use before any is rehearsed: joints give way under load, of which limits that
+# are linear know nothing.
+LEFT: Final = 0.87
+# A limit that a rehearsal passes is held to half of what that is too much, as centres of pressure run ahead where a
+# sole begins to roll; at most so much less.
 SMALLER: Final = 0.85
 # m: a centre of pressure never leaves a sole. One at the border, to what its computation misses by, does not say how
-# much too large a motion is: it is made as much smaller as it may.
+# much too large a motion is: its limit is held to as much less as it may.
 TIPS: Final = 0.0005
-SPARE: Final = 0.005  # smaller than what is just allowed
-# One that leaves room where it was tightest is made larger once, at most so much: small soles need all of it.
-LARGER: Final = 1.2
-WORTH: Final = 1.02  # and at least so much: less is not worth two rehearsals
+SPARE: Final = 0.005  # less than what is just allowed
 BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
-ROUNDS: Final = 8
+ROUNDS: Final = 12
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
 
@@ -109,6 +109,11 @@ class Design:
             for one, own, beside in zip(self.rehearsals, found, near, strict=True)
         }
 
+    def noise(self, foot: str, axis: str, name: str) -> float | None:
+        """What noise makes of it [% of its value], the worst of all rehearsals; None where none identifies it."""
+        found = [one.of_noise(foot, axis, name) for one in self.rehearsals]
+        return max((own for own in found if own is not None), default=None)
+
     @property
     def nominal(self) -> Rehearsal:
         """The rehearsal at the stiffness that was told."""
@@ -160,11 +165,14 @@ def design_motion(
     bushes = [told.times(factor) for factor in _rehearsed_at(*factors)]
     reach = Reach(legs, linear, lines, told, bushes)
     before = 0.0 if known is None else known.precision(reach.feet)
-    # What rehearsals would leave of it comes first: most motions were made smaller by as much.
-    coefficients = LEFT * best_motion(reach, settings.criterion, random, before, progress)
-    coefficients, rehearsals, pairs = _rehearsed(
-        robot, legs, lines, coefficients, told, _rehearsed_at(*factors), progress
+    within = reach.held(np.full((len(bushes), len(KINDS)), LEFT))
+    motion = _Attempt(
+        reach,
+        lambda limits, start: better_motion(limits, settings.criterion, start, before),
+        best_motion(within, settings.criterion, random, before, progress),
+        _rehearsed_at(*factors),
     )
+    coefficients, rehearsals, pairs = _rehearsed(motion, legs, told, progress)
     return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
 
 
@@ -178,106 +186,111 @@ def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float,
 
 @dataclass
 class _Attempt:
-    """A motion while its size is sought: larger once where there is room, smaller until it holds."""
+    """A motion while rehearsals show how much of each limit it may use.
 
+    Where it uses more of one than holds, that limit is held to less, at that stiffness alone, and the search goes on. A
+    stiffness that amplifies does not make the motion small at others.
+    """
+
+    reach: Reach
+    better: Callable[[Reach, Array], Array]  # a motion that is better, or within other limits, than one
     coefficients: Array
-    first: list[float]  # factors of the stiffness at which it is rehearsed before the others
+    factors: tuple[float, ...]
+    shares: Array = field(init=False)  # (S, KINDS) of the limits over each bush
+    others: float = 1.0  # share of the limits over no bush
+    still: tuple[str, ...] = ()
+    first: list[float] = field(
+        init=False
+    )  # factors of the stiffness at which it is rehearsed before the others
     rehearsals: dict[float, Rehearsal] = field(default_factory=dict)  # of the motion as it is, by factor
-    share: float = 1.0  # the last one by which it was made smaller
-    may_grow: bool = True
-    fallback: tuple[Array, dict[float, Rehearsal]] | None = (
-        None  # motion and rehearsals before it was made larger
-    )
 
-    def shrink(self, share: float) -> None:
-        """A smaller motion. One that was made larger is as before: near the least stiffness all grows steeply."""
-        if self.fallback is None:
-            self.coefficients, self.rehearsals = share * self.coefficients, {}
-        else:
-            self.coefficients, self.rehearsals = self.fallback
-        self.fallback, self.share = None, share
+    def __post_init__(self) -> None:
+        self.shares = np.full((len(self.factors), len(KINDS)), LEFT)
+        self.first = [self.factors[0], self.factors[-1]]
 
-    def shrink_by_use(self, used: float) -> None:
-        """Smaller after rehearsals, by half of what is used too much; the next start where it did not hold."""
-        if self.fallback is None:
-            self.first = [factor for factor, one in self.rehearsals.items() if _used(one)[0] > 1.0]
-        self.shrink(max((1 - SPARE) / np.sqrt(used), SMALLER))
+    def search_on(self) -> None:
+        """Within the limits as they are now."""
+        within = self.reach.held(self.shares, self.others, self.still)
+        self.coefficients, self.rehearsals = self.better(within, self.coefficients), {}
 
-    def grow(self, used: float, progress: Callable[[str], None]) -> None:
-        """Larger, once, where that is worth its rehearsals; after one made smaller only half of the way back."""
-        self.may_grow = False
-        grown = min((1 - SPARE) / np.sqrt(used), LARGER if self.share == 1.0 else self.share**-0.5)
-        if grown > WORTH:
-            progress(f"larger by {100 * (grown - 1):.0f} %: there is room")
-            self.fallback = self.coefficients, self.rehearsals
-            self.coefficients, self.rehearsals = grown * self.coefficients, {}
+    def shrink(self) -> None:
+        """Smaller in all."""
+        self.shares, self.others = SMALLER * self.shares, SMALLER * self.others
+        self.search_on()
 
-    def lower_arms(self, lines: Lines) -> bool:
-        """Leave the arms out, where they move and the motion was not just made larger. False: nothing changed."""
-        still = lines.without(self.coefficients, "arms")
-        if self.fallback is not None or np.array_equal(still, self.coefficients):
+    def lower_arms(self) -> bool:
+        """Leave the arms out, where they move. False: nothing changed."""
+        still = self.reach.lines.without(self.coefficients, "arms")
+        if self.still or np.array_equal(still, self.coefficients):
             return False
-        self.coefficients, self.rehearsals = still, {}
+        self.coefficients, self.still = still, ("arms",)
+        self.search_on()
         return True
 
-    def next_factors(self, factors: tuple[float, ...]) -> list[float]:
-        """At which stiffness to rehearse next: none are left, or before it grows the first ones tell enough."""
-        if self.may_grow and self.rehearsals:
-            return []
+    def adapt(self) -> None:
+        """Search on within limits as rehearsals found them: what used too much may use less."""
+        rows = [self.factors.index(factor) for factor in self.rehearsals]
+        used = np.array([_used(one)[0] for one in self.rehearsals.values()])
+        foretold, shares = self.reach.used_by_kind(self.coefficients)[rows], self.shares[rows]
+        change = np.clip((1 - SPARE) / np.sqrt(np.maximum(used, 1.0)), SMALLER, 1.0)
+        change[used <= 1] = 1.0
+        self.first = [factor for factor, own in zip(self.rehearsals, used, strict=True) if own.max() > 1]
+        # What lies between is held to shares between; what failed far from its limit is held to less than it used.
+        order = np.argsort(rows)
+        places = np.log(self.factors)
+        for kind, own in enumerate(np.log(change[order]).T):
+            self.shares[:, kind] *= np.exp(np.interp(places, places[np.array(rows)[order]], own))
+        self.shares[rows] = np.where(used > 1, change * np.minimum(shares, foretold), shares)
+        self.search_on()
+
+    def next_factors(self) -> list[float]:
+        """At which stiffness to rehearse next."""
         left = sorted(
-            (each for each in factors if each not in self.rehearsals), key=lambda each: each not in self.first
+            (each for each in self.factors if each not in self.rehearsals),
+            key=lambda each: each not in self.first,
         )
         urgent = sum(each in self.first for each in left)
         return left[: max(urgent, BESIDE)] if urgent else left
 
 
 def _rehearsed(
-    robot: RobotModel,
-    legs: Legs,
-    lines: Lines,
-    coefficients: Array,
-    told: Softness,
-    factors: tuple[float, ...],
-    progress: Callable[[str], None],
+    motion: _Attempt, legs: Legs, told: Softness, progress: Callable[[str], None]
 ) -> tuple[Array, list[Rehearsal], int]:
-    """The motion, larger where there is room and smaller until it holds at every stiffness. Raises MotionError where
-    none does.
+    """The motion within limits at which it holds at every stiffness. Raises MotionError where none does.
 
-    A rehearsal takes seconds: the ends of the range come first, and after a motion was made smaller those at which it
-    did not hold. In the end all hold with the motion as it is.
+    A rehearsal takes seconds: the ends of the range come first, and after a change those at which it did not hold. In
+    the end all hold with the motion as it is.
     """
-    motion, reason = _Attempt(coefficients, [factors[0], factors[-1]]), ""
+    robot, reason = legs.body.robot, ""
     for _ in range(ROUNDS):
         try:
-            trajectory = Trajectory.of("design", legs, lines, motion.coefficients)
+            trajectory = Trajectory.of("design", legs, motion.reach.lines, motion.coefficients)
         except MotionError as error:
             reason = str(error)
             progress(f"smaller: {reason}")
-            motion.shrink(SMALLER)
+            motion.shrink()
             continue
         watched = self_collision(robot, trajectory.configurations)
         if watched.touching is not None:
             first, second, row = watched.touching
             reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
-            quiet = motion.lower_arms(lines)
+            quiet = motion.lower_arms()
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
             if not quiet:
-                motion.shrink(SMALLER)
+                motion.shrink()
             continue
         plan, used = trajectory.plan(), 0.0
-        while used <= 1.0 and (asked := motion.next_factors(factors)):
+        while used <= 1.0 and (asked := motion.next_factors()):
             found = rehearse(robot, plan, told, asked, progress)
-            used, reason = max(map(_used, found), key=lambda each: each[0])
+            used, reason = max(((float(each.max()), why) for each, why in map(_used, found)))
             motion.rehearsals |= {one.factor: one for one in found}
         if used > 1.0:
             progress(f"smaller: {reason}")
-            motion.shrink_by_use(used)
-        elif motion.may_grow:
-            motion.grow(used, progress)
-        else:
-            progress("identify the feet from the rehearsals")
-            rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in factors])
-            return motion.coefficients, rehearsals, watched.pairs
+            motion.adapt()
+            continue
+        progress("identify the feet from the rehearsals")
+        rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in motion.factors])
+        return motion.coefficients, rehearsals, watched.pairs
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 
@@ -295,17 +308,26 @@ def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:
     return tuple(sorted({low, low**0.5, 1.0, high**0.5, high**0.75, high}))
 
 
-def _used(one: Rehearsal) -> tuple[float, str]:
-    """How much of the tightest limit a rehearsal took up, above 1 where it does not hold, and what that limit is."""
+def _used(one: Rehearsal) -> tuple[Array, str]:
+    """How much of each of the KINDS of limits a rehearsal took up, above 1 where it does not hold, and the tightest.
+    What falls or asks too much of a joint takes up too much of all."""
     at = f"at {one.factor:.3g} times the stiffness"
     if one.fell is not None:
-        return np.inf, f"{at}: {one.fell}"
-    room = one.standing_margin - KEPT
-    told = room > 0 and one.sole_margin > TIPS
-    share = (one.standing_margin - one.sole_margin) / room if told else np.inf
+        return np.full(len(KINDS), np.inf), f"{at}: {one.fell}"
+    soles = [
+        (rest - near) / (rest - KEPT) if rest > KEPT and near > TIPS else np.inf
+        for near, rest in zip(one.sole_margins, one.standing_margins, strict=True)
+    ]
+    used = np.array([*soles, one.friction / FRICTION, (1 - one.least_load) / (1 - LIFT), one.bend / BEND])
     close = f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
-    return max(
-        (share, close),
-        (one.friction / FRICTION, f"{at} a foot needs a friction of {one.friction:.2f}"),
-        (one.effort / EFFORT, f"{at} a joint needs {100 * one.effort:.0f} % of its torque limit"),
-    )
+    said = [
+        close,
+        close,
+        f"{at} a foot needs a friction of {one.friction:.2f}",
+        f"{at} a foot keeps {100 * one.least_load:.0f} % of its load",
+        f"{at} a foot is bent by {one.bend:.2f} rad",
+        f"{at} a joint needs {100 * one.effort:.0f} % of its torque limit",
+    ]
+    effort = one.effort / EFFORT
+    tightest = said[int(np.append(used, effort).argmax())]
+    return np.maximum(used, effort if effort > 1 else 0.0), tightest

@@ -66,6 +66,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         {
             "foot": foot, "axis": axis, "name": name, "unit": model.unit(name, axis), "value": values[name],
             "half_width_percent": widths[found.nominal.factor],
+            "noise_percent": found.noise(foot, axis, name),
             "at": [
                 {"factor": one.factor, "half_width_percent": widths[one.factor],
                  "error_percent": one.error(foot, axis, name, values[name]),

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
+
+from plantar.design.story import LONGEST
+
+TIMES: Final = 4  # the duration, of a longer motion that is spoken of
 
 
 def sheet(content: Mapping[str, Any], approach: bool) -> str:
@@ -18,6 +22,7 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
         if approach
         else "Make gentler versions with `--approach` and play those first."
     )
+    longer = min(TIMES * settings["duration"], LONGEST)
     touch = content["self_collision"]
     watched = (
         f"No links touched: {touch['pairs']} pairs were watched, by the URDF's collision geometry."
@@ -25,7 +30,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
         else "**The URDF's collision geometry was not found: nobody checked whether arms and trunk touch.**"
     )
     rows = [
-        f"| {one['foot']} | {one['axis']} | {one['name']} | {_number(one['half_width_percent'])} |"
+        f"| {one['foot']} | {one['axis']} | {one['name']} | {_number(one['half_width_percent'])} | "
+        f"{_number(one['noise_percent'])} |"
         for one in content["parameters"]
     ]
     limits = [
@@ -74,9 +80,12 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "",
             "## What it promises",
             "",
-            "| foot | axis | parameter | 95 % half width [%] |",
-            "|---|---|---|---|",
+            "| foot | axis | parameter | 95 % half width [%] | noise alone, at the worst stiffness [%] |",
+            "|---|---|---|---|---|",
             *rows,
+            "",
+            f"What noise makes goes with the root of the duration: `--duration {longer:g}` leaves "
+            f"{100 * (settings['duration'] / longer) ** 0.5:.0f} % of it.",
             "",
             *_common(content),
             "",

@@ -29,11 +29,9 @@ from plantar.signals.resampling import shifted
 ROUNDS = 6
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
-SUSPECT = (
-    3.0  # likewise, for steps from elsewhere to be tried, where it is not known well by how much they differ
-)
+SUSPECT = 3.0  # likewise, for steps from elsewhere to be tried, where the difference is not well known
 LEAST_DISTINCT = 0.0015  # s, and by so much
-WELL_KNOWN = 0.003  # s: differences less well known than this are no ground for delays of their own
+WELL_KNOWN = 0.003  # s: differences less well known than this are looked for elsewhere as well
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
 APART = 0.001  # s: deviation by which sensors of one robot are read apart; a cycle of a bus of 1 kHz
 
@@ -137,13 +135,12 @@ def _step(
         apart = contrasts @ (at + free.values)
         variance = np.diag(contrasts @ free.covariance @ contrasts.T)
         spread = np.sqrt(variance + LEAST_STD**2)
-        well = spread < WELL_KNOWN
-        seem = np.abs(apart) > np.maximum(np.where(well, DISTINCT, SUSPECT) * spread, LEAST_DISTINCT)
-        differ, suspect = seem & well, bool((seem & ~well).any())
-        differ[:-1] = differ[:-1].any()
-        # What is known no better than by what is usual moves nothing; nor does anything beside what is much, not known.
-        known = (spread < APART) & (not suspect)
-        share = np.where(known, APART**2 / (APART**2 + spread**2), 0.0)
+        size = np.abs(apart)
+        seem = size > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
+        suspect = bool((size > SUSPECT * spread)[spread >= WELL_KNOWN].any())
+        differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
+        # What is known no better than by what is usual moves nothing.
+        share = np.where(spread < APART, APART**2 / (APART**2 + spread**2), 0.0)
         # What no model shows better is in the deviation of all feet's delay already.
         own = np.sqrt(np.append(variance[:-1], spread[-1] ** 2))
         usual, unsure = share * apart, np.where(share > 0, np.sqrt(share) * own, APART)
