@@ -71,6 +71,29 @@ def pulled_to_accelerometer(rate: float) -> Change:
     return change
 
 
+def loose(angle: float, axis: int) -> Change:
+    """An IMU that turns to and fro in its mount, by an angle [rad] about one of its axes, every few seconds."""
+
+    def change(case: Case) -> Case:
+        begin = f"imu.{case.robot['imu']['name']}"
+
+        def each(table: Table) -> Table:
+            time, rate = table["time"], f"{begin}.angular_velocity.{'xyz'[axis]}"
+            side = np.sign(np.sin(2 * np.pi * 0.21 * time) + np.sin(2 * np.pi * 0.083 * time + 1))
+            turn = first_order(angle / 2 * side, 0.4)
+            q = np.column_stack([table[f"{begin}.orientation.{each}"] for each in "wxyz"])
+            about = rotation_from_quaternion(q)[:, :, axis]
+            turned = _turned_in_world(np.sin(turn / 2)[:, None] * about, q)
+            orientation = {
+                f"{begin}.orientation.{each}": own for each, own in zip("wxyz", turned.T, strict=True)
+            }
+            return {**table, **orientation, rate: table[rate] + np.gradient(turn, time)}
+
+        return case.with_tables(each)
+
+    return change
+
+
 def _turned_in_world(half: Array, q: Array) -> Array:
     """Quaternions w x y z (N, 4) turned about the world's axes; half: sines of half the turns, (N, 3) or (1, 3)."""
     w, vector = q[:, :1], q[:, 1:]

@@ -109,6 +109,34 @@ def in_one_log(fault: Change) -> Change:
     return change
 
 
+def from_the_middle_on(fault: Change) -> Change:
+    """A fault of values in the second half of each log alone."""
+
+    def change(case: Case) -> Case:
+        spoiled = fault(case).tables
+
+        def half(good: Array, bad: Array) -> Array:
+            return np.where(np.arange(len(good)) < len(good) // 2, good, bad)
+
+        tables = {
+            name: {column: half(values, spoiled[name][column]) for column, values in table.items()}
+            for name, table in case.tables.items()
+        }
+        return replace(case, tables=tables)
+
+    return change
+
+
+def late_at_times(columns: Columns, rows: int) -> Change:
+    """Columns that are so many rows late for a second in every 2.4, as behind a network that is busy at times."""
+
+    def put(values: Array) -> Array:
+        number = np.arange(len(values))
+        return values[np.maximum(number - rows * (np.sin(0.013 * number) > 0.3), 0)]
+
+    return altered(columns, put)
+
+
 def by_largest(columns: Columns, values: Callable[[Array, float], Array]) -> Change:
     """Other values in some columns, from these and the largest reading of each in any log."""
 

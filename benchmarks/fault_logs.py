@@ -6,18 +6,21 @@ from itertools import product
 
 import numpy as np
 
-from fault_attitudes import gyroscope_in_world, pulled_to_accelerometer, reoriented
+from fault_attitudes import gyroscope_in_world, loose, pulled_to_accelerometer, reoriented
 from fault_case import Columns, Fault, encoder, encoders, imu, wrench
 from fault_changes import (
+    altered,
     clipped,
     dead_below,
     drifting_clock,
     dropouts,
     every_nth_held,
     exchanged,
+    from_the_middle_on,
     in_one_log,
     in_steps,
     late,
+    late_at_times,
     lost_frames,
     low_passed,
     one_after_another,
@@ -165,6 +168,9 @@ TIMING = (
       for what, columns, ms in (("IMU", imu(), 8), ("IMU", imu(), 30), ("wrenches", wrench(), 13))),
     *(Fault(f"{what} 20 ms late alone", "timing", late((columns, 0.02)), DELAY)
       for what, columns in (("forces", FORCES), ("torques", TORQUES))),
+    Fault("left wrench 25 ms late from the middle on", "timing",
+          from_the_middle_on(altered(wrench("left"), lambda values: np.append(values[:5], values[:-5]))), DELAY),
+    Fault("left wrench 40 ms late at times", "timing", late_at_times(wrench("left"), 8), DELAY),
     Fault("wrenches' clock 0.1 % slow", "timing", drifting_clock(wrench(), 1e-3), (*DELAY, "clock", "drift")),
     Fault("wrenches filtered at 5 Hz", "timing", low_passed(wrench(), 5), (*DELAY, "filter")),
     Fault("stamps rounded to 10 ms", "timing", timed(lambda time: np.round(time, 2)), ("time",)),
@@ -211,6 +217,8 @@ FREEZING = (
     *(Fault(f"left ankle pitch slips by {size} deg half way", "freezing",
             stepped(encoder("left", place=ANKLE_PITCH, quantity="position"), 0.5, np.radians(size)), ("jumps",))
       for size in (0.4, 1.5)),
+    *(Fault(f"IMU loose by 5 mrad about {name}", "freezing", loose(0.005, axis), ("jumps", "loose"))
+      for axis, name in enumerate("xy")),
     *(Fault(f"left {name} stuck, velocity goes on", "freezing",
             overwritten(encoder("left", place=place, quantity="position"), 0, 1), STUCK) for name, place in ENCODERS),
 )  # fmt: skip

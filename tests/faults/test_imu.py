@@ -107,6 +107,13 @@ def test_a_gyroscope_that_reads_one_value_on_a_robot_that_stands_still_is_not_de
     assert not [finding for finding in check_imu("chest", resting) if finding.code == "dead_channel"]
 
 
+def test_a_coarse_gyroscope_that_hardly_turns_about_one_axis_is_not_dead(log: MotionLog) -> None:
+    step = 0.5 * np.ptp(log.column(GYROSCOPE[1]))
+    read = {name: step * np.round(log.column(name) / step) for name in GYROSCOPE[:2]}
+    coarse = log.with_columns(read | {GYROSCOPE[2]: np.zeros(len(log))})
+    assert not [finding for finding in check_imu("chest", coarse) if finding.code == "dead_channel"]
+
+
 def test_an_accelerometer_alone_cannot_be_dead(log: MotionLog) -> None:
     """Without an orientation it is what tells gravity's direction."""
     (finding,) = check_imu("chest", scaled(ACCELEROMETER, 0.0)(without(ORIENTATION)(log)))

@@ -15,13 +15,18 @@ DATA_FAULTS = (
         ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
-        "feet/assess/zero_jumps.py", "a foot that was lifted has jumped",
-        "np.where(same, apart, 0.0)", "apart", ("feet/assess/test_zero_jumps.py",),
+        "feet/assess/zero_jumps.py", "a loose sensor has one zero",
+        "((BESIDE, 1, EXPLAINS), (BRIEF, len(missed), NEARLY_ALL))", "((BESIDE, 1, EXPLAINS),)",
+        ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
         "feet/assess/late_recordings.py", "any delay within the interval is a fault",
         "fit_blocks(blocks).values[RATE]) < NORMAL95 * wide.std[RATE]",
         "fit_blocks(blocks).values[RATE]) < 0.0", ("feet/assess/test_late_recordings.py",),
+    ),
+    Mutant(
+        "feet/assess/late_recordings.py", "halves of walks that hardly differ are a fault",
+        "2 * NORMAL95 * wide.std[RATE]", "0.0", ("feet/assess/test_late_recordings.py",),
     ),
     Mutant(
         "feet/assess/late_recordings.py", "a memory is a late recording",

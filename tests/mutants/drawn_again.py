@@ -100,8 +100,8 @@ VERDICTS = (
         "LEANING = 0.05", "LEANING = 0.5",
     ),
     Mutant(
-        "feet/assess/zero_jumps.py", "a jump across a lift counts",
-        "int(np.argmax(np.where(same, apart, 0.0)))", "int(np.argmax(apart))",
+        "signals/mean_changes.py", "a jump across a lift counts",
+        "np.where(same, apart, 0.0) > far", "apart > far",
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "any jump is worth a warning",

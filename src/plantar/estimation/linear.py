@@ -36,6 +36,15 @@ def effect_of(influences: Sequence[Array], changes: Sequence[Array]) -> Array:
     return np.asarray(sum(own @ change for own, change in zip(influences, changes, strict=True)))
 
 
+def fits_of_halves(block: Block) -> tuple[LinearFit, LinearFit]:
+    """The fits of the first and of the last half of a block's stances, each alone; of two stances at least."""
+    assert block.stances is not None, "a block of a foot that steps"
+    stances = block.stances.split()
+    parts = (stances[: len(stances) // 2], stances[len(stances) // 2 :])
+    first, last = (fit_blocks([block.part(np.sort(np.concatenate(part)))]) for part in parts)
+    return first, last
+
+
 def information_inverse(blocks: Sequence[Block], *, shared_offset: bool = False) -> Array:
     """Inverse (k, k) of the information about `values`: their covariance for residuals of unit variance."""
     size = blocks[0].regressor.shape[1]

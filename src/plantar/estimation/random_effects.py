@@ -1,4 +1,4 @@
-"""By how much groups differ beyond what each is unsure by, where there are few of them."""
+"""By how much groups differ beyond what each is unsure by, where there are few of them, and which one is odd."""
 
 from __future__ import annotations
 
@@ -28,6 +28,16 @@ class ShareBetween(NamedTuple):
     share: float
     low: float
     high: float
+
+
+class Odd(NamedTuple):
+    """The group at `place`: what it is less the others' mean, as a `share`, with deviation `std`; `apart`: the share by
+    which the others scatter."""
+
+    place: int
+    share: float
+    std: float
+    apart: float
 
 
 def resolution(sets: Sequence[Differences]) -> float:
@@ -61,3 +71,39 @@ def _likelihood(found: Differences) -> Array:
     spread = found.covariance + np.multiply.outer(TRIED**2, np.eye(len(found.shares)) + 1.0)
     distance = found.shares @ np.linalg.solve(spread, found.shares[:, None])
     return np.asarray(-0.5 * (np.linalg.slogdet(spread)[1] + distance[:, 0]))
+
+
+def furthest(found: Differences, much: float, sure: float) -> Odd | None:
+    """The group that is by more than the share `much`, and by more than `sure` deviations, beside the others, as far as
+    these agree; None where none is. The first group is one of them."""
+    count = len(found.shares) + 1
+    shares = np.append(0.0, found.shares)
+    covariance = np.zeros((count, count))
+    covariance[1:, 1:] = found.covariance
+    tried = [_beside_others(shares, covariance, place) for place in range(count)]
+    clear = [one for one in tried if abs(one.share) > max(much, sure * one.std)]
+    return max(clear, key=lambda one: abs(one.share) / one.std, default=None)
+
+
+def _beside_others(shares: Array, covariance: Array, place: int) -> Odd:
+    """One group beside the mean of the others, weighted by how well each is known and by how far they differ."""
+    others = [each for each in range(len(shares)) if each != place]
+    apart = _apart(shares[others], covariance[np.ix_(others, others)])
+    # Of this group less each other one: both ends of a difference may be off by `apart` as well.
+    spread = covariance + apart**2 * np.eye(len(shares))
+    step = np.eye(len(shares)) - np.eye(len(shares))[place]
+    differences = step[others] @ spread @ step[others].T
+    weight = np.linalg.solve(differences, np.ones(len(others)))
+    variance = 1.0 / float(weight.sum())
+    share = float(variance * weight @ (shares[place] - shares[others]))
+    return Odd(place, share, float(np.sqrt(variance)), apart)
+
+
+def _apart(shares: Array, covariance: Array) -> float:
+    """By which share these differ among one another; nothing is known of one alone. Never 0: without noise a covariance
+    is."""
+    if len(shares) < 2:
+        return LEAST
+    step = np.eye(len(shares))[1:] - np.eye(len(shares))[0]
+    beside = Differences(step @ shares, step @ covariance @ step.T)
+    return share_between([beside], float(np.sqrt(np.mean(np.diag(beside.covariance))))).share

@@ -11,6 +11,7 @@ from plantar.faults.gyroscope import Turns, check_gyroscope, rows_to_compare
 from plantar.faults.quaternions import misread, readings
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Finding
+from plantar.signals.held import coarse
 from plantar.signals.segments import complete
 
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
@@ -46,7 +47,8 @@ def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
 
 
 def _dead_channels(log: MotionLog, columns: Sequence[str], orientation: Array | None) -> Iterator[Finding]:
-    moves = _moves(orientation)
+    # What hardly turns a coarse sensor stays within one of its steps.
+    moves = _moves(orientation) and not any(coarse(log.column(column)) for column in columns)
     for column in columns:
         values = log.column(column)
         finite = values[np.isfinite(values)]

@@ -118,7 +118,8 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
         text = (
             f"{axis}: the feet's torques do not give the moments that the robot's motion needs: {read}, and stiffness "
             f"and damping follow them. Check {'sign, ' * opposite}unit and calibration of the torque channels, and in "
-            "the robot file where each force sensor measures (wrench: xyz): a place that is wrong looks the same"
+            "the robot file where each force sensor measures (wrench: xyz) and where the IMU sits (imu: link, xyz): a "
+            "place that is wrong looks the same"
         )
         largest = max(map(abs, found.shares.values())) if found.apart else abs(found.mean)
         notes[axis] = Note("torque_gain", "warning" if largest > MAY_BE_CHANCE else "info", text)

@@ -42,13 +42,13 @@ class MomentErrors:
 
     The first axis is the six rows of Newton's law.
 
-    The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else each
-    foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders, of
-    the gyroscope, and of all torques behind the forces. Behind them stand the log's own zeros of each channel of each
-    foot, with deviations `zeros` (z,): at an arm that moves with the robot, a zero does not stay a constant. `products`
-    (parts, 6, k + 1, k + 1) are those of missing and columns in each part of the log, without what the sensors' noise
-    adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds; `independent` is the share of
-    samples [each `period` s] that are.
+    The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else
+    each foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the
+    encoders, of the gyroscope, and of all torques about pitch and about roll behind the forces. Behind them stand
+    the log's own zeros of each channel of each foot, with deviations `zeros` (z,): at an arm that moves with the
+    robot, a zero does not stay a constant. `products` (parts, 6, k + 1, k + 1) are those of missing and columns in
+    each part of the log, without what the sensors' noise adds to them; `drawn` (6, k, draws) those of columns and
+    what a wrong URDF adds; `independent` is the share of samples [each `period` s] that are.
     """
 
     columns: Array
@@ -73,7 +73,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     )
     readings, zeros, measured, by_torques = _reading_columns(robot, equation, residual, motion.positions)
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
-    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, by_torques, *zeros]
+    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *by_torques, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
@@ -152,7 +152,7 @@ def prior_deviations(robot: RobotModel) -> Array:
     """Deviations of the columns' coefficients before the moments are asked, (k,)."""
     feet = len(robot.feet)
     of_feet = np.tile(_sensor_errors(robot)[1], feet)
-    late = [*np.full(feet + 2, LATE), LATE_TORQUES]
+    late = [*np.full(feet + 2, LATE), *np.full(2, LATE_TORQUES)]
     return np.concatenate([np.full(2 * feet, LOOSE), of_feet, np.full(3, MOUNT), late])
 
 
@@ -170,8 +170,8 @@ def _reading_columns(
 ) -> tuple[list[Array], list[Array], Array, Array]:
     """What gains of torques and other errors of the feet's sensors add to the measured side; what one newton or
     newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; the
-    measured side, and how it changes with the moment at which all torques are read. positions: of the joints
-    (n, joints).
+    measured side, and how it changes with the moments at which all torques about pitch and about roll are read,
+    (2, n, 6). positions: of the joints (n, joints).
     """
     matrices = _sensor_errors(robot)[0]
     gains: list[list[Array]] = [[], []]
@@ -189,8 +189,8 @@ def _reading_columns(
         others += [*carried[2:]]
         zeros += [*-transfer.transpose(2, 0, 1)]
         measured = measured + carried[2]  # the gain of all channels
-        own_rates = residual.changes[:, 6 * place + 3 : 6 * place + 6]
-        by_torques = by_torques + np.einsum("nij,nj->ni", transfer[:, :, 3:], own_rates)
+        changes = alone @ residual.changes[:, 6 * place : 6 * place + 6].T
+        by_torques = by_torques + np.asarray(transfer @ changes.transpose(2, 1, 0)).transpose(2, 0, 1)
     return [*gains[0], *gains[1], *others], zeros, measured, by_torques
 
 

@@ -15,7 +15,7 @@ from plantar.feet import foot_assessment
 from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
-from plantar.feet.recording import Recording
+from plantar.feet.recording import Recording, Stances
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
@@ -89,6 +89,41 @@ def test_the_other_axis_torque_in_a_turned_sensor_is_no_delay() -> None:
 
 def test_one_recording_has_none_to_differ_from() -> None:
     assert said(swaying(PLAIN, 0.012)[1:2]) == []
+
+
+def walking(late: float, from_row: int, stances: int = 12) -> list[Recording]:
+    """Two walks; the force sensors are `late` [s] from one row on. Every stance has an offset of its own."""
+    number, made = np.arange(COUNT) * stances // COUNT, []
+    for seed in (0, 1):
+        angle, random = swayed(COUNT, seed=seed), np.random.default_rng(seed)
+        torque = PLAIN.torque(angle, np.gradient(angle, PERIOD)) + random.standard_normal(stances)[number]
+        behind = PERIOD * (np.arange(COUNT) - late / PERIOD * (np.arange(COUNT) >= from_row))
+        torque = np.interp(behind, PERIOD * np.arange(COUNT), torque) + 0.1 * random.standard_normal(COUNT)
+        made.append(made_recording(f"walk_{seed}", angle, torque, stances=Stances(number, np.ones(COUNT))))
+        made[-1].raw[FOOT].torque[:, 1] = 0.0  # else a turned sensor would explain all
+    return made
+
+
+@pytest.mark.parametrize(("late", "told"), [(0.02, "20 ms later"), (-0.02, "20 ms earlier")])
+def test_walks_whose_second_halves_are_late_are_told_of(late: float, told: str) -> None:
+    (text,) = said(walking(late, COUNT // 2))
+    assert text.startswith(f"{FOOT} pitch: damping is {'-' if late > 0 else '+'}8.")
+    assert told in text
+
+
+@pytest.mark.parametrize(
+    ("recordings", "std"),
+    [
+        (walking(0.0, 0), 0.001),
+        (walking(0.02, 0), 0.001),  # late throughout: all of it is damping's
+        (walking(0.02, COUNT // 2), 2.5),  # half of 8.4 is within the interval
+        (walking(0.02, COUNT // 2, stances=7), 0.2),  # three stances scatter by chance
+    ],
+)
+def test_walks_whose_halves_agree_as_far_as_they_tell_are_none(
+    recordings: list[Recording], std: float
+) -> None:
+    assert said(recordings, std=std) == []
 
 
 def late_by(log: MotionLog, delay: float) -> MotionLog:

@@ -11,8 +11,8 @@ from biped import TRUTH, record, sway
 from bush_data_sets import Rubber
 from feet_trials import LINEAR, noisy, stepping
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.estimation.random_effects import Differences
-from plantar.feet.assess.odd_recordings import CODE, furthest, odd_recordings, odd_walks
+from plantar.estimation.random_effects import Differences, furthest
+from plantar.feet.assess.odd_recordings import CODE, odd_recordings, odd_walks
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
@@ -83,7 +83,7 @@ def test_a_memory_makes_small_motions_stiffer() -> None:
     ],
 )
 def test_the_furthest_is_told_as_far_as_the_others_agree(shares: list[float], found: int | None) -> None:
-    odd = furthest(Differences(np.array(shares), 0.002**2 * (np.eye(3) + 1.0)))
+    odd = furthest(Differences(np.array(shares), 0.002**2 * (np.eye(3) + 1.0)), 0.05, 5.0)
     assert (odd and odd.place) == found
     if odd is not None:
         assert abs(odd.share) == pytest.approx(0.1, abs=0.003)
@@ -92,7 +92,7 @@ def test_the_furthest_is_told_as_far_as_the_others_agree(shares: list[float], fo
 
 def test_what_is_hardly_known_is_not_told() -> None:
     """A tenth, known to 3 %."""
-    assert furthest(Differences(np.array([0.0, -0.1, 0.0]), 0.03**2 * (np.eye(3) + 1.0))) is None
+    assert furthest(Differences(np.array([0.0, -0.1, 0.0]), 0.03**2 * (np.eye(3) + 1.0)), 0.05, 5.0) is None
 
 
 def test_a_walk_is_told_from_others_by_the_scatter_of_its_stances() -> None:
@@ -153,5 +153,5 @@ def test_no_number_of_an_odd_axis_is_usable(robot: RobotModel) -> None:
 def test_of_logs_without_noise_nothing_is_unsure_and_the_odd_one_is_found(
     shares: list[float], odd: int | None
 ) -> None:
-    found = furthest(Differences(np.array(shares), np.zeros((len(shares), len(shares)))))
+    found = furthest(Differences(np.array(shares), np.zeros((len(shares), len(shares)))), 0.05, 5.0)
     assert (found and found.place) == odd

@@ -59,6 +59,14 @@ def test_a_jump_has_its_size_beside_the_drift_that_follows_it(size: float) -> No
     assert abs(float(text.split()[3]) - 33.0) < 0.3
 
 
+@pytest.mark.parametrize("count", [3, 12])
+def test_a_sensor_that_is_loose_jumps_to_and_fro(count: int) -> None:
+    """Over longer means none of its jumps stands out, and none alone explains much."""
+    loose = np.sign(np.sin(np.pi * (0.5 + count * np.arange(COUNT) / COUNT)))
+    (text,) = said(swaying(PLAIN, 2.0 * loose))
+    assert f"the first of {count} times" in text
+
+
 @pytest.mark.parametrize(
     "recordings",
     [
@@ -170,7 +178,7 @@ def test_a_step_explains_most_of_what_is_missed(share: float, told: bool) -> Non
     step = 2 * np.sqrt(share / (1 - share)) * (np.arange(2000) >= 1000)
     block = Block("sway", random.standard_normal((2000, 1)), 10 * random.standard_normal(2000), PERIOD, 1)
     whole = missed - missed.mean() + step - step.mean()
-    left = _left_beside(whole, 1000, block)
+    left = _left_beside(whole, [1000], block)
     assert (left is not None) == told
     if left is not None:
         assert left == pytest.approx((1 - share) * float(whole @ whole), rel=0.05)
@@ -182,5 +190,5 @@ def test_a_stiffness_of_the_recordings_own_is_no_jump_of_its_zero() -> None:
     angle, noise = random.standard_normal((2, 2000))
     block = Block("sway", angle[:, None], 10 * angle, PERIOD, 1)
     step = np.where(np.arange(2000) >= 1000, 0.5, 0.0)
-    assert _left_beside(3 * angle + step + 0.5 * noise, 1000, block) is None
-    assert _left_beside(3 * angle + step + 0.1 * noise, 1000, block) is not None
+    assert _left_beside(3 * angle + step + 0.5 * noise, [1000], block) is None
+    assert _left_beside(3 * angle + step + 0.1 * noise, [1000], block) is not None

@@ -128,3 +128,11 @@ def test_recordings_differ_by_what_their_axes_show_together_at_least_by_the_prio
     (note,) = apart_notes(Apart(0.05, 3, (0.0123, 0.0456)))
     assert "by a standard deviation of 1.2 to 4.6 % (95 %; from all axes of 4 recordings)" in note.text
     assert apart_notes(Apart(0.05, 3)) == []
+
+
+@pytest.mark.parametrize(("low", "severity"), [(0.029, "info"), (0.031, "warning")])
+def test_recordings_that_surely_differ_by_over_three_per_cent_are_warned_of(
+    low: float, severity: str
+) -> None:
+    (note,) = apart_notes(Apart(0.05, 3, (low, 0.1)))
+    assert note.severity == severity

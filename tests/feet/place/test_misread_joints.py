@@ -69,6 +69,15 @@ def test_the_joint_is_named_and_neither_number_is_usable(
     assert all(row.verdict == "usable" for row in rows if row.axis not in (axis, "z"))
 
 
+def test_a_leg_all_of_whose_joints_are_late_is_told_as_one(robot: RobotModel, walks: list[MotionLog]) -> None:
+    leg = [name for name in robot.joint_names if name.startswith("left_")]
+    late = walks
+    for joint in leg:
+        late = [misread(log, joint, late=0.012) for log in late]
+    found = identify_feet(robot, late, settings=LINEAR)
+    assert any("'all joints to the left foot' " in text for text in said(found))
+
+
 @pytest.mark.parametrize(("joint", "gain"), [("left_ankle_pitch", 1.0), ("right_ankle_pitch", 1.05)])
 def test_nothing_is_said_of_joints_read_right_nor_of_a_foot_that_stands(
     robot: RobotModel, walks: list[MotionLog], joint: str, gain: float

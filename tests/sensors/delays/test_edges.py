@@ -112,6 +112,16 @@ def test_what_clearly_differs_is_read_apart_however_well_it_is_known(
     assert found.encoders_unsure == pytest.approx(np.hypot(std, 0.0003))
 
 
+@pytest.mark.parametrize(("apart", "suspect"), [(0.0146, False), (0.0156, True)])
+def test_three_deviations_of_what_is_not_known_well_are_ground_for_a_search(
+    monkeypatch: pytest.MonkeyPatch, apart: float, suspect: bool
+) -> None:
+    """Encoders 100 ms late look 50 ± 14 ms late from none; three times 5 and 0.3 ms are 15.03 ms."""
+    found = stepped(monkeypatch, (0.0, 0.0, apart), 0.005)
+    assert found is not None
+    assert (found.suspect, found.encoders_differ) == (suspect, False)
+
+
 def test_delays_that_need_not_differ_go_together_first(monkeypatch: pytest.MonkeyPatch) -> None:
     found = stepped(monkeypatch, (-0.002, 0.002, 0.0), 1e-6, at=(0.006, 0.002, 0.0))
     assert found is not None
@@ -122,15 +132,23 @@ def test_delays_that_need_not_differ_go_together_first(monkeypatch: pytest.Monke
     assert far is None, "later than 50 ms is another fault"
 
 
-def refined(std: float, closed: int = 1, suspect: bool = False, value: float = 0.0) -> RefinedDelays:
+def refined(
+    std: float, closed: int = 1, suspect: bool = False, value: float = 0.0, differ: bool = False
+) -> RefinedDelays:
     mask = np.arange(2) < closed
-    return RefinedDelays(np.array([value, value, 0.0]), std, 20.0, False, False, mask, 0.005, suspect)
+    return RefinedDelays(np.array([value, value, 0.0]), std, 20.0, differ, False, mask, 0.005, suspect)
 
 
-def test_of_two_answers_the_unsuspected_then_the_wider_then_the_sharper_is_surer() -> None:
-    order = [refined(0.1, 1, suspect=True), refined(0.2, 1), refined(0.1, 1), refined(0.5, 2)]
+def test_of_two_answers_the_unsuspected_then_the_wider_then_the_apart_then_the_sharper_is_surer() -> None:
+    order = [
+        refined(0.1, 1, suspect=True),
+        refined(0.2, 1),
+        refined(0.1, 1),
+        refined(0.3, 1, differ=True),
+        refined(0.5, 2),
+    ]
     for place, one in enumerate(order):
-        assert [_surer(one, other) for other in order] == [other < place for other in range(4)]
+        assert [_surer(one, other) for other in order] == [other < place for other in range(len(order))]
 
 
 def lags(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from moments import fit_moments
+from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -24,7 +27,8 @@ def twin() -> RobotModel:
 
 
 def late(log: MotionLog, quantity: str, seconds: float) -> MotionLog:
-    names = [name for name in log.columns if name.startswith("wrench.") and f".{quantity}." in name]
+    """A quantity is `force`, `torque` or one channel of it."""
+    names = [name for name in log.columns if name.startswith("wrench.") and f".{quantity}" in name]
     moved = shifted(log.stack(names), log.period, -seconds)
     return log.with_columns(dict(zip(names, moved.T, strict=True)))
 
@@ -36,18 +40,26 @@ def told(twin: RobotModel, log: MotionLog) -> list[Note]:
 
 @pytest.mark.parametrize(
     ("quantity", "seconds", "words"),
-    [("torque", 0.02, "behind"), ("torque", 0.008, "behind"), ("force", 0.02, "ahead of")],
+    [("torque", 0.02, "behind"), ("torque", 0.008, "behind"), ("force", 0.02, "ahead")],
 )
 def test_channels_read_apart_are_told_with_their_delay(
     twin: RobotModel, quantity: str, seconds: float, words: str
 ) -> None:
     (note,) = told(twin, late(checked(twin, walked()), quantity, seconds))
     assert (note.code, note.severity) == (TORQUES_LATE, "warning")
-    size, unit, sense = note.text.split("torques are ")[1].split(" their forces")[0].partition(" ms (95 %) ")
-    assert sense == words, unit
-    value, _, reach = size.partition(" ± ")
-    assert float(value) == pytest.approx(1e3 * seconds, rel=0.25)
-    assert float(reach) <= 3.0
+    for each in note.text.split("their forces: ")[1].split(" (95 %)")[0].split(", "):
+        value, reach, sense = re.findall(r"\S+ (\d+) ± (\d+) ms (\w+)", each)[0]
+        assert sense == words
+        assert float(value) == pytest.approx(1e3 * seconds, rel=0.25)
+        assert float(reach) <= 3.0
+    assert [axis in note.text for axis in ROTATIONAL_AXES] == [True, True]
+
+
+@pytest.mark.parametrize(("channel", "axis"), [("torque.y", "pitch"), ("torque.x", "roll")])
+def test_torques_about_one_axis_alone_are_told_apart(twin: RobotModel, channel: str, axis: str) -> None:
+    (note,) = told(twin, late(checked(twin, walked()), channel, 0.015))
+    (each,) = note.text.split("their forces: ")[1].split(" (95 %)")[0].split(", ")
+    assert each.startswith(f"{axis} 1")
 
 
 def test_sensors_read_at_one_moment_are_not_told(twin: RobotModel) -> None:
@@ -59,5 +71,5 @@ def test_sensors_read_at_one_moment_are_not_told(twin: RobotModel) -> None:
 
 @pytest.mark.parametrize(("std", "some"), [(0.001, 1), (0.01, 0)])
 def test_a_delay_that_may_be_chance_is_not_told(std: float, some: int) -> None:
-    fit = MomentFit(np.array([0.0, 0.02]), [Part(std**2 * np.eye(2), 1e6)])
+    fit = MomentFit(np.array([0.0, 0.0, 0.02]), [Part(std**2 * np.eye(3), 1e6)])
     assert len(torque_delay_notes(fit)) == some

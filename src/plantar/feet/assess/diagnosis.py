@@ -21,7 +21,8 @@ REMEDY = {
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
     "moment arm": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
-    "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
+    "between recordings": "recordings differ by more than each alone shows: warm the rubber up, check the joints "
+    "between IMU and foot, record more of them",
     "force gain": "weigh the robot and write its mass into the robot file (mass: ...). If the URDF was wrong, that "
     "narrows the interval and hardly moves the number; if it was right, calibrate the force sensors, which the number "
     "follows",
@@ -49,7 +50,7 @@ REMEDY = {
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
     "delay", "encoders' delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain",
-    "torque gain", "imu turn", "low-pass", "joint compliance",
+    "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9  # of the variance

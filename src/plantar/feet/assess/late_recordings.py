@@ -2,7 +2,8 @@
 
 Delays are found from the ground's wrench where nobody holds the robot. A recording in which somebody does may have
 another one, and only its damping tells: a delay d takes K·d off it. The fit of all then lies somewhere between the
-recordings, by more than its interval, or a memory is made up for what they disagree in.
+recordings, by more than its interval, or a memory is made up for what they disagree in. Of walks it may be so within a
+recording: where a part of one does not follow from Newton's law, as if somebody pushed, the other part tells the delay.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ import numpy as np
 from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks
 from plantar.estimation.least_squares import sureness_of_own
+from plantar.estimation.linear import fits_of_halves
+from plantar.estimation.weighted_mean import weighted_mean
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import beside
 from plantar.models import BESIDE, KelvinVoigt
@@ -22,6 +25,8 @@ from plantar.notes import Note
 
 RECORDING_LATE = "recording_late"
 SURE = 5.0  # deviations by which a recording's damping must differ, as delays of logs that show them
+FEWEST = 8  # stances of a recording: four say how much they scatter
+TINY = 1e-9  # N.m.s/rad: exact logs have no deviation
 RATE = 1  # the place of the rate, and of damping, in spring and damper
 
 
@@ -30,9 +35,12 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
 
     tangent: the recordings' `tangent_blocks`, whose torque is about the place that the fit has found: about another,
     motions about the other axis show as damping. Where a memory leaves less than a damping of its own does, it is the
-    memory that makes damping differ. Not of a foot that steps: landings shake its damping more than delays do.
+    memory that makes damping differ. Of a foot that steps, whose landings shake its damping more than delays do, the
+    halves of each recording are compared: they have the same landings.
     """
-    if tangent[0].stances is not None or shared or len(tangent) < 2:
+    if tangent[0].stances is not None:
+        return _late_halves(wide, tangent)
+    if shared or len(tangent) < 2:
         return []
     blocks = [_spring_and_damper(block) for block in tangent]
     sureness = sureness_of_own(blocks, RATE)
@@ -49,6 +57,31 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
         f"{blocks[most].label}: {wide.foot} {wide.axis}: damping is {apart:+.3g} N.m.s/rad beside the other "
         f"recordings', as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} against "
         "the IMU than theirs. Record it again with clocks and filters as in the others, or leave it out"
+    )
+    return [Note(RECORDING_LATE, "warning", text)]
+
+
+def _late_halves(wide: AxisFit, tangent: Sequence[Block]) -> list[Note]:
+    """The same of the halves of all recordings of a foot that steps."""
+    halves = [
+        fits_of_halves(block)
+        for block in tangent
+        if block.stances is not None and len(block.stances.split()) >= FEWEST
+    ]
+    if not halves:
+        return []
+    apart = weighted_mean(
+        [last.values[RATE] - first.values[RATE] for first, last in halves],
+        [max(np.hypot(first.std[RATE], last.std[RATE]), TINY) for first, last in halves],
+    )
+    # Half of it is how far the damping of both together is from that of either.
+    if abs(apart.value) < max(SURE * apart.std, 2 * NORMAL95 * wide.std[RATE]):
+        return []
+    late = -1e3 * apart.value / wide.values[0]
+    text = (
+        f"{wide.foot} {wide.axis}: damping is {apart.value:+.3g} N.m.s/rad in the second halves of the recordings "
+        f"beside the first, as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} there "
+        "against the IMU. Find the moment at which a clock or driver changed, and cut the recordings there"
     )
     return [Note(RECORDING_LATE, "warning", text)]
 

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import NORMAL95, Array
+from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks, influences_of, interval95
 from plantar.estimation.errors_in_variables import attenuation
-from plantar.estimation.random_effects import LEAST, Differences, share_between
+from plantar.estimation.random_effects import Differences, Odd, furthest
 from plantar.feet.interval_width.between_recordings import among, beside_one
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -30,16 +29,6 @@ MUCH = 0.05  # of the stiffness; rubber that is warmer or stood under load befor
 # Of the stiffness: a recording that makes less moves by a tenth of what the largest does, and all else that is wrong
 # is divided by that.
 TELLS = 0.01
-
-
-class Odd(NamedTuple):
-    """The recording at `place`: its stiffness less the others' mean, as a `share` of it, with deviation `std`; `apart`:
-    the share by which the others scatter."""
-
-    place: int
-    share: float
-    std: float
-    apart: float
 
 
 def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> list[Note]:
@@ -57,7 +46,7 @@ def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> lis
     tell = np.flatnonzero(np.array(told) > TELLS * fit.values[0]).tolist()
     if len(tell) < 2 or not fit.values[0] > 0:
         return []
-    odd = furthest(among(beside_one(blocks, torques, tell[0]), tell))
+    odd = furthest(among(beside_one(blocks, torques, tell[0]), tell), MUCH, SURE)
     if odd is not None and not isinstance(wide.model, KelvinVoigt):
         place = tell[odd.place]
         own = [torque[:, None] * float(each == place) for each, torque in enumerate(torques)]
@@ -81,7 +70,7 @@ def odd_walks(
     # An interval of few stances is wide by Student's quantile, so that few that scatter little by chance are not sure.
     std = np.array([high - low for _, _, (low, high) in known]) / (2 * NORMAL95 * stiffness)
     covariance = np.diag(std[1:] ** 2) + std[0] ** 2
-    odd = furthest(Differences(shares[1:] - shares[0], covariance))
+    odd = furthest(Differences(shares[1:] - shares[0], covariance), MUCH, SURE)
     return _notes(odd, wide, [name for name, _, _ in known])
 
 
@@ -113,38 +102,3 @@ def _notes(odd: Odd | None, fit: AxisFit, names: Sequence[str]) -> list[Note]:
         "Leave it out, or fit it alone"
     )
     return [Note(CODE, "warning", text)]
-
-
-def furthest(found: Differences) -> Odd | None:
-    """The recording that is surely and much beside the others, as far as these agree; None where none is."""
-    count = len(found.shares) + 1
-    shares = np.append(0.0, found.shares)
-    covariance = np.zeros((count, count))
-    covariance[1:, 1:] = found.covariance
-    tried = [_beside_others(shares, covariance, place) for place in range(count)]
-    sure = [one for one in tried if abs(one.share) > max(MUCH, SURE * one.std)]
-    return max(sure, key=lambda one: abs(one.share) / one.std, default=None)
-
-
-def _beside_others(shares: Array, covariance: Array, place: int) -> Odd:
-    """One recording beside the mean of the others, weighted by how well each is known and by how far they differ."""
-    others = [each for each in range(len(shares)) if each != place]
-    apart = _apart(shares[others], covariance[np.ix_(others, others)])
-    # Of this recording less each other one: both ends of a difference may be off by `apart` as well.
-    spread = covariance + apart**2 * np.eye(len(shares))
-    step = np.eye(len(shares)) - np.eye(len(shares))[place]
-    differences = step[others] @ spread @ step[others].T
-    weight = np.linalg.solve(differences, np.ones(len(others)))
-    variance = 1.0 / float(weight.sum())
-    share = float(variance * weight @ (shares[place] - shares[others]))
-    return Odd(place, share, float(np.sqrt(variance)), apart)
-
-
-def _apart(shares: Array, covariance: Array) -> float:
-    """By which share these differ among one another; nothing is known of one alone. Never 0: without noise a covariance
-    is."""
-    if len(shares) < 2:
-        return LEAST
-    step = np.eye(len(shares))[1:] - np.eye(len(shares))[0]
-    beside = Differences(step @ shares, step @ covariance @ step.T)
-    return share_between([beside], float(np.sqrt(np.mean(np.diag(beside.covariance))))).share

@@ -1,7 +1,8 @@
-"""Logs within which a zero jumps: an encoder that slips, an IMU or a force sensor that is zeroed anew.
+"""Logs within which a zero jumps: an encoder that slips, an IMU or a force sensor that is zeroed anew, or is loose.
 
 One offset a recording cannot follow that: stiffness and damping bend towards it, or a memory is made up for it. A jump
-stands out in what spring and damper leave: the mean changes at one moment as it does at no other, and stays.
+stands out in what spring and damper leave: the mean changes at one moment as it does at no other, and stays. Of a
+sensor that is loose it changes often, to and fro, and shows over brief means.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
@@ -23,11 +23,13 @@ from plantar.feet.regression.model_columns import model_columns
 from plantar.feet.regression.regression_data import beside, blocks_of, recordings_of, tangent_blocks
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
+from plantar.signals.mean_changes import mean_changes
 from plantar.signals.segments import run_numbers
 
-BESIDE = 1.0  # s before and after a moment, over which means are compared
+BESIDE, BRIEF = 1.0, 0.3  # s before and after a moment, over which means are compared
 FAR = 8.0  # times the usual difference of two such means
 EXPLAINS = 0.5  # of the squares that spring and damper leave of the recording
+NEARLY_ALL = 0.95  # likewise, of a sensor that is loose: the turns of a memory are not as sharp
 WORTH = 0.03  # of the recording's spread of torque: a smaller jump does no harm
 STATES = np.linspace(-1.0, 1.0, 21)  # of a memory at the start of a log
 CODE = "zero_jump"
@@ -68,8 +70,9 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
         Note(
             CODE,
             "warning",
-            f"{label}: t = {jump.time:.1f} s: the zero of {fit.foot} {fit.axis} jumps: an encoder between IMU and foot "
-            "slipped, or IMU or force sensor were zeroed anew (valid: one zero throughout a log; cut it there)",
+            f"{label}: t = {jump.time:.1f} s{jump.more}: the zero of {fit.foot} {fit.axis} jumps: an encoder between "
+            "IMU and foot slipped, or IMU or force sensor were zeroed anew or are loose (valid: one zero throughout a "
+            "log; cut it there)",
         )
         for label, jump in jumps.items()
     ]
@@ -101,10 +104,15 @@ def _starts(block: Block, recordings: Sequence[Recording], fit: AxisFit, left: M
 
 
 class _Jump(NamedTuple):
-    """Its moment [s], and the squares that are `left` of the misfit beside it."""
+    """Its moment [s], or the first of so many `times`, and the squares that are `left` of the misfit beside all."""
 
     time: float
+    times: int
     left: float
+
+    @property
+    def more(self) -> str:
+        return f", the first of {self.times} times" if self.times > 1 else ""
 
 
 def _jumps(
@@ -116,42 +124,26 @@ def _jumps(
         missed = whole.residuals[block.label]
         places = np.flatnonzero(recording.rows(foot))
         contact = recording.contacts[foot]
-        # A jump may look like a slide, but not like a sole that tips, and then may come to lie otherwise.
+        # A foot that was lifted or has tipped meanwhile stands elsewhere. What jumps may look like a slide.
         stands = run_numbers(contact.loaded & ~contact.left_out_for(TIPPING))[places]
-        row = _jump(missed, stands, block.period)
-        left = None if row is None else _left_beside(missed, row, block)
-        if row is not None and left is not None:
-            found[block.label] = _Jump(float(recording.time[places[row]]), left)
+        for seconds, most, share in ((BESIDE, 1, EXPLAINS), (BRIEF, len(missed), NEARLY_ALL)):
+            rows = sorted(mean_changes(missed, stands, max(1, round(seconds / block.period)), FAR)[:most])
+            left = _left_beside(missed, rows, block, share) if rows else None
+            if left is not None:
+                found[block.label] = _Jump(float(recording.time[places[rows[0]]]), len(rows), left)
+                break
     return found
 
 
-def _jump(missed: Array, stands: NDArray[np.intp], period: float) -> int | None:
-    """The row of `missed` (n,) about which its mean changes by far most; None where it does about none.
-
-    stands: (n,), the number of the stance: a foot that was lifted or tipped meanwhile stands elsewhere.
-    """
-    width = max(1, round(BESIDE / period))
-    if len(missed) < 6 * width:
-        return None
-    until = np.concatenate([[0.0], np.cumsum(missed)])
-    means = (until[width:] - until[:-width]) / width
-    apart = np.abs(means[width:] - means[:-width])
-    same = stands[2 * width - 1 :] == stands[: len(stands) - 2 * width + 1]
-    if not same.any():
-        return None
-    best = int(np.argmax(np.where(same, apart, 0.0)))
-    return best + width if apart[best] > FAR * float(np.median(apart[same])) else None
-
-
-def _left_beside(missed: Array, row: int, block: Block) -> float | None:
-    """What a step at this row leaves of the squares that are `missed` (n,), beside the block's own columns; None where
-    it does not explain most of what these leave, or is small."""
-    step = np.where(np.arange(len(missed)) >= row, 1.0, 0.0)[:, None]
+def _left_beside(missed: Array, rows: Sequence[int], block: Block, share: float = EXPLAINS) -> float | None:
+    """What steps at these rows leave of the squares that are `missed` (n,), beside the block's own columns; None where
+    they do not explain this share of what these leave, or are small."""
+    steps = np.where(np.arange(len(missed))[:, None] >= np.asarray(rows), 1.0, 0.0)
     own = replace(block, response=missed, noise=None)
     # A recording's own stiffness explains much of what the common one misses, without any step.
-    without, fit = (fit_blocks([each]) for each in (own, beside(own, step)))
+    without, fit = (fit_blocks([each]) for each in (own, beside(own, steps)))
     before, left = (each.residuals[block.label] for each in (without, fit))
-    most = left @ left < (1 - EXPLAINS) * float(before @ before)
-    # The drift has taken most of the step: only beside it does the step have its size.
-    size = abs(float(fit.values[-1]))
+    most = left @ left < (1 - share) * float(before @ before)
+    # The drift has taken most of a step: only beside it does the step have its size.
+    size = float(np.abs(fit.values[-len(rows) :]).max())
     return float(left @ left) if most and size > WORTH * float(np.std(block.response)) else None

@@ -23,6 +23,8 @@ NAME = "between recordings"
 MOST = 0.5  # of what tells a number: a recording that has more tells more than all others together
 # Of the stiffness: in a recording that makes less of it, all else that is wrong is divided by a small motion.
 TELLS = 0.05
+# Share, surely: rubber that warms up does less. It is a warning then.
+MUCH = 0.03
 
 
 class Apart(NamedTuple):
@@ -76,7 +78,7 @@ def apart_notes(apart: Apart) -> list[Note]:
         "warms up or that stood under load before does that; so does a joint between IMU and foot that is read wrongly "
         "in some of them"
     )
-    return [Note("between_recordings", "info", text)]
+    return [Note("between_recordings", "warning" if apart.shown[0] > MUCH else "info", text)]
 
 
 def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:

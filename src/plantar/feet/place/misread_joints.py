@@ -99,7 +99,9 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
         for kind, first in (("gain", 0), ("late", 1)):
             columns[joint, kind] = own * (motion[:, first : first + 2] @ fit.values[:2])
-    return columns
+    # One bus often reads all joints of a leg.
+    late = [column for (_, kind), column in columns.items() if kind == "late"]
+    return columns | {(f"all joints to the {fit.foot} foot", "late"): np.sum(late, axis=0)}
 
 
 def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:

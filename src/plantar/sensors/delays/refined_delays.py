@@ -29,6 +29,7 @@ from plantar.signals.resampling import shifted
 ROUNDS = 6
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
+SUSPECT = 3.0  # likewise, for steps from elsewhere to be tried, where the difference is not well known
 LEAST_DISTINCT = 0.0015  # s, and by so much
 WELL_KNOWN = 0.003  # s: differences less well known than this are looked for elsewhere as well
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
@@ -134,8 +135,9 @@ def _step(
         apart = contrasts @ (at + free.values)
         variance = np.diag(contrasts @ free.covariance @ contrasts.T)
         spread = np.sqrt(variance + LEAST_STD**2)
-        seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
-        suspect = bool((seem & (spread >= WELL_KNOWN)).any())
+        size = np.abs(apart)
+        seem = size > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
+        suspect = bool((size > SUSPECT * spread)[spread >= WELL_KNOWN].any())
         differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
         # What is known no better than by what is usual moves nothing.
         share = np.where(spread < APART, APART**2 / (APART**2 + spread**2), 0.0)

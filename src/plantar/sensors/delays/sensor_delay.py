@@ -117,8 +117,17 @@ def estimate_wrench_delay(
 
 
 def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
-    """Whether nothing is suspect about the one alone, or Newton's law closes in more logs, or it is better known."""
-    better, worse = ((not each.suspect, int(each.closed.sum()), -each.std) for each in (one, other))
+    """Whether nothing is suspect about the one alone, or Newton's law closes in more logs, or it alone shows sensors to
+    differ, or it is better known: a common delay of sensors that differ looks well known, and is neither's."""
+    better, worse = (
+        (
+            not each.suspect,
+            int(each.closed.sum()),
+            each.feet_differ or each.encoders_differ,
+            -each.std,
+        )
+        for each in (one, other)
+    )
     return better > worse
 
 
