@@ -89,9 +89,14 @@ struct Columns {
     return x;
   }
 
-  Wide<V> beyond(std::ptrdiff_t place) const {
+  PLANTAR_INLINE Wide<V> at(std::ptrdiff_t place) const {
+    if (place >= 0 && place <= last) return read(place);
     if (place < 0 && place >= -last) return 2.0 * read(0) - read(-place);
     if (place > last && place <= 2 * last) return 2.0 * read(last) - read(2 * last - place);
+    return far_beyond(place);
+  }
+
+  Wide<V> far_beyond(std::ptrdiff_t place) const {
     std::ptrdiff_t turns = place / (2 * last), rest = place % (2 * last);
     if (rest < 0) {
       rest += 2 * last;
@@ -123,12 +128,13 @@ inline void low_pass_columns(const LowPass& filter, const Rows& rows, std::size_
   SectionState<V> first, second;
   const auto forth = [&](std::ptrdiff_t b, bool stored) {
     const std::ptrdiff_t from = b * block - padding, until = b + 1 < blocks ? from + block : end;
+    SectionState<V> own_first = first, own_second = second;  // in registers: samples wait for them
     Wide<V> x = {};
     for (std::ptrdiff_t i = from; i < until; ++i) {
-      x = i < 0 || i > last ? signal.beyond(i) : signal.read(i);
-      x = advance(two, second, advance(one, first, x));
+      x = advance(two, own_second, advance(one, own_first, signal.at(i)));
       if (stored) store(filtered + static_cast<std::size_t>(i - from) * Wide<V>::SIZE, x);
     }
+    first = own_first, second = own_second;
     return x;
   };
   const auto keep_states = [&](std::ptrdiff_t b) {
@@ -137,7 +143,7 @@ inline void low_pass_columns(const LowPass& filter, const Rows& rows, std::size_
   const auto kept_states = [&](std::ptrdiff_t b) {
     first = kept<V>(states(b)), second = kept<V>(states(b) + 2 * Wide<V>::SIZE);
   };
-  const Wide<V> x = signal.beyond(-padding);
+  const Wide<V> x = signal.at(-padding);
   first = settled(one, x), second = settled(two, x);
   keep_states(0);
   for (std::ptrdiff_t b = 0; b + 1 < blocks; ++b) {
@@ -154,14 +160,16 @@ inline void low_pass_columns(const LowPass& filter, const Rows& rows, std::size_
     } else {
       kept_states(b + 1);  // the way back begins where that of the block behind ended
     }
+    SectionState<V> own_first = first, own_second = second;
     std::ptrdiff_t row = until <= begin ? -1 : ((until - 1 < last ? until - 1 : last) - begin) / every;
     for (std::ptrdiff_t i = until - 1; i >= (from > begin ? from : begin); --i) {
       const double* at = filtered + static_cast<std::size_t>(i - from) * Wide<V>::SIZE;
-      const Wide<V> y = advance(two, second, advance(one, first, load_wide<V>(at)));
+      const Wide<V> y = advance(two, own_second, advance(one, own_first, load_wide<V>(at)));
       if (i != begin + row * every) continue;
       double* const kept_row = out + static_cast<std::size_t>(row--) * rows.k;
       for (std::size_t v = 0, c = column; v < V && c < to; ++v, c += LANES) scatter(kept_row + c, y.part[v], to - c);
     }
+    first = own_first, second = own_second;
     keep_states(b);
   }
 }
@@ -170,9 +178,10 @@ inline void low_pass_columns(const LowPass& filter, const Rows& rows, std::size_
 inline void low_pass(const LowPass& filter, const Rows& rows, std::size_t column, std::size_t to, double* work,
                      double* out) {
   while (column < to) {
-    const bool many = to - column > 2 * LANES;
-    (many ? low_pass_columns<LOW_PASS_VECTORS> : low_pass_columns<1>)(filter, rows, column, to, work, out);
-    column += (many ? LOW_PASS_VECTORS : 1) * LANES;
+    const std::size_t left = to - column, vectors = left <= LANES ? 1 : left <= 2 * LANES ? 2 : LOW_PASS_VECTORS;
+    (vectors == 1 ? low_pass_columns<1> : vectors == 2 ? low_pass_columns<2> : low_pass_columns<LOW_PASS_VECTORS>)(
+        filter, rows, column, to, work, out);
+    column += vectors * LANES;
   }
 }
 

@@ -15,6 +15,7 @@ import command_line
 import design_samples
 from plantar.design.trajectory import Trajectory
 from plantar.design.writing.controllers import ordered_joints, write_mc_rtc, write_pos
+from plantar.design.writing.outputs import check_outputs
 from plantar.errors import SettingsError
 from plantar.logs.readers import open_log
 from plantar.robot.model import RobotModel
@@ -111,3 +112,12 @@ def test_an_order_with_joints_that_are_not_there_is_refused(
         capsys, "design", file, "--stiffness", 500, "--to", "mc_rtc", "--out", tmp_path / "motion.csv"
     )
     assert "columns.joints names 'thumb'" in line
+
+
+@pytest.mark.parametrize(("rate", "taken"), [(20.0, True), (2000.0, True), (19.9, False), (2001.0, False)])
+def test_a_rate_that_no_controller_has_is_refused(rate: float, taken: bool) -> None:
+    if taken:
+        check_outputs(hrp2.robot(), rate, ())
+    else:
+        with pytest.raises(SettingsError, match="20 to 2000 Hz"):
+            check_outputs(hrp2.robot(), rate, ())

@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from plantar.estimation.blocks import Block, StanceRows
-from plantar.estimation.linear import effect_of, fit_blocks, influences_of, information_inverse
+from plantar.estimation.linear import (
+    effect_of,
+    fit_blocks,
+    influences_of,
+    information_inverse,
+    least_left,
+)
 from plantar.estimation.residual_covariance import interval95
 from plantar.estimation.stance_least_squares import fit_stances
 from plantar.estimation.stance_problem import StanceProblem
@@ -248,3 +254,26 @@ def test_one_offset_for_all_takes_no_heed_of_stances() -> None:
     assert fit_blocks([stepping], shared_offset=True).values == pytest.approx(
         fit_blocks([plain], shared_offset=True).values
     )
+
+
+def test_what_a_further_column_leaves_at_least() -> None:
+    """The plain squares of every column beside all others, and no fit with weights and priors leaves less."""
+    blocks = [walk(seed) for seed in range(4)]
+    random = np.random.default_rng(1)
+    true = [random.normal(size=(len(block.response), 1)) for block in blocks]
+    blocks = [
+        replace(block, response=block.response + 3 * own[:, 0])
+        for block, own in zip(blocks, true, strict=True)
+    ]
+    columns = [np.hstack([random.normal(size=(len(own), 2)), own]) for own in true]
+    for column, least in enumerate(least_left(blocks, columns)):
+        wider = [
+            replace(block, regressor=np.column_stack([block.regressor, own[:, column]]))
+            for block, own in zip(blocks, columns, strict=True)
+        ]
+        rows = np.vstack([np.hstack([block.regressor, block.common_nuisance]) for block in wider])
+        each = np.kron(np.eye(len(blocks)), np.ones((len(blocks[0].response), 1)))
+        response = np.concatenate([block.response for block in wider])
+        left = np.linalg.lstsq(np.hstack([rows, each]), response)[1]
+        assert least == pytest.approx(left[0], rel=1e-9)
+        assert least <= fit_blocks(wider).squares

@@ -152,7 +152,7 @@ ASSESSMENT = (
     ),
     Mutant(
         "feet/assess/parameter_rows.py", "damping counts as negative when it may be",
-        "float(fit.numbers[1]) + 2 * float(fit.std[1])", "float(fit.numbers[1]) - 2 * float(fit.std[1])",
+        "damping + 2 * float(fit.std[1]) < 0", "damping - 2 * float(fit.std[1]) < 0",
     ),
     Mutant(
         "feet/assess/diagnosis.py", "shares of deviations, not of variances",

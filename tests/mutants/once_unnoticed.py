@@ -49,7 +49,7 @@ GUARDS = (
         tests=("feet/assess/test_scores.py",),
     ),
     Mutant(
-        "feet/assess/verdicts.py", "negative damping is not refused", "if evidence.not_passive:", "if False:",
+        "feet/assess/verdicts.py", "negative damping is not refused", "if evidence.lag:", "if False:",
     ),
     Mutant(
         "feet/assess/verdicts.py", "a further term is never weak",

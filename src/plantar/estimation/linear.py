@@ -9,8 +9,10 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
 from plantar.estimation.least_squares import factor_of, fit_linear, influences
+from plantar.estimation.orthonormal import without
 from plantar.estimation.stance_least_squares import fit_stances
-from plantar.estimation.stance_problem import StanceProblem
+from plantar.estimation.stance_problem import StanceProblem, common_columns
+from plantar.estimation.triangular import TriangularFactor
 
 
 def fit_blocks(blocks: Sequence[Block], *, shared_offset: bool = False) -> LinearFit:
@@ -40,6 +42,21 @@ def information_inverse(blocks: Sequence[Block], *, shared_offset: bool = False)
     if _step(blocks, shared_offset):
         return StanceProblem.drawn_together(blocks).solve().inverse[:size, :size]
     return factor_of(blocks, shared_offset).information_inverse()[:size, :size]
+
+
+def least_left(blocks: Sequence[Block], columns: Sequence[Array]) -> Array:
+    """The squares (c,) that a fit with one more column at least leaves, of each of several `columns` (n, c) of blocks.
+
+    Whatever the weights of rows and the priors of offsets: these are the squares without either. One factor tells all.
+    """
+    size = common_columns(blocks[0]).shape[1]
+    rows = []
+    for block, more in zip(blocks, columns, strict=True):
+        own = block.with_nuisance(np.ones((len(more), 1))).nuisance
+        rows.append(without(own, np.column_stack([common_columns(block), more, block.response])))
+    left = TriangularFactor.of(np.vstack(rows)).factor[size:, size:]
+    along, squares = left[:, -1] @ left[:, :-1], np.sum(left[:, :-1] ** 2, axis=0)
+    return np.asarray(left[:, -1] @ left[:, -1] - along**2 / np.maximum(squares, np.finfo(float).tiny))
 
 
 def _step(blocks: Sequence[Block], shared_offset: bool) -> bool:

@@ -16,7 +16,7 @@ from plantar.robot.model import RobotModel
 
 
 def test_a_stiffness_beside_negative_damping_is_weak() -> None:
-    evidence = Evidence(seconds=60.0, excitation=0.02, explained=0.98, not_passive=True)
+    evidence = Evidence(seconds=60.0, excitation=0.02, explained=0.98, lag=0.02)
     verdict, reason, advice = judge("left", "pitch", "stiffness", 400.0, (390.0, 410.0), evidence)
     assert verdict == "weak"
     assert "damping is negative" in reason
@@ -54,7 +54,8 @@ def test_negative_damping_beyond_doubt_spoils_the_stiffness_too(robot: RobotMode
             assert found.parameter(foot, axis, "damping").verdict == "unidentifiable"
             stiffness = found.parameter(foot, axis, "stiffness")
             assert stiffness.verdict == "weak"
-            assert "damping is negative" in stiffness.reason
+            lag = -1e3 * found.parameter(foot, axis, "damping").value / stiffness.value
+            assert f"damping is negative, as of a torque read {lag:.0f} ms late or more" in stiffness.reason
 
 
 def test_damping_that_may_be_zero_does_not(robot: RobotModel) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from plantar.feet.assess.contradiction import missed_motions
 from plantar.feet.assess.diagnosis import REMEDY, share_of
-from plantar.feet.assess.verdicts import Evidence, judge, judge_term
+from plantar.feet.assess.verdicts import LATE, SIGNS, Evidence, judge, judge_term
 from plantar.feet.place.far_arms import far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
@@ -49,8 +49,9 @@ def with_(**change: object) -> Evidence:
         (NARROW, with_(seconds=9.96), (
             WEAK, "only 10.0 s of samples are used, too short to tell slow drift from the foot "
             "(valid: 10 s or more)", SWAY)),
-        (NARROW, with_(not_passive=True), (WEAK, "damping is negative: something other than the bush contributes "
-                                                   "to this torque", SWAY)),
+        (NARROW, with_(lag=0.0486), (
+            WEAK, "damping is negative, as of a torque read 49 ms late or more: something other than the bush "
+            "contributes to this torque", LATE)),
         (NARROW, with_(contradicted=MISSED), (
             WEAK, "misses Tilt3 by 1.3 N.m on average, where a constant misses by 2.5 (both beside slow drift), "
             "although the model holds in other motions",
@@ -76,8 +77,14 @@ def test_a_verdict_s_words(
 
 def test_a_negative_number_and_other_axes() -> None:
     """Negative only where the whole interval is; each axis and term has its own motion."""
-    assert judge("left", "roll", "damping", -9.0, (-20.0, 0.0), GOOD)[1] == (
-        "damping is negative: something other than the bush produces this torque"
+    assert judge("left", "roll", "damping", -9.0, (-20.0, 0.0), GOOD)[1:] == (
+        "damping is negative: something other than the bush produces this torque",
+        SIGNS,
+    )
+    assert judge("left", "roll", "damping", -9.0, (-20.0, 0.0), with_(lag=0.0486))[1:] == (
+        "damping is negative, as of a torque read 49 ms late or more: something other than the bush produces this "
+        "torque",
+        LATE,
     )
     assert judge("left", "roll", "damping", -9.0, (-20.0, 2.0), GOOD)[:2] == (
         "unidentifiable", "the 95 % interval reaches zero; the motion gave 1.3 deg rms of roll"

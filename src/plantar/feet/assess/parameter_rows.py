@@ -114,12 +114,13 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
     noise = 0.0
     if fit.slip_angle is not None and all(each.stances[fit.foot] is None for each in recordings):
         noise = float(np.sqrt(missed / max(samples, 1))) / abs(float(fit.values[0])) / fit.slip_angle
-    damping = float(fit.numbers[1]) + 2 * float(fit.std[1])
+    stiffness, damping = (float(value) for value in fit.numbers[:2])
+    negative = stiffness > 0 and damping + 2 * float(fit.std[1]) < 0
     return Evidence(
         seconds,
         float(np.sqrt(moved / max(samples, 1))),
         1 - left / varied if varied else 0.0,
-        damping < 0,
+        -damping / stiffness if negative else 0.0,
         leaning=leans / loaded if has_memory(fit.model) and loaded else 0.0,
         noise=noise,
         softened=softened,

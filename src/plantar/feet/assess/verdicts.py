@@ -16,6 +16,7 @@ LEAST_EXCITATION = 1e-7  # rad rms: no sensor tells as little, it is rounding
 SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8  # likewise, for a number to be usable
+LATE = "find out how late the force sensors are (arm sweeps of 0.3 to 1 Hz, or --wrench-delay); check signs and filters"
 SIGNS = "check sign and rpy of this foot's wrench, link and rpy of the IMU, signs of the joints: no motion helps here"
 NOISY = 0.13  # of the slip angle: of simulated robots with more noise of the angle one in three had a wrong slip angle
 # Share of its slope that a spring may lose as it bends. Rubber hardens; a sole that begins to turn about its edge takes
@@ -32,17 +33,17 @@ SWAY = {
 
 @dataclass(frozen=True)
 class Evidence:
-    """What one fit shows: used `seconds`, rms of deflection [rad], share of variance explained, whether the
-    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), the share of the
-    time in which the sole leans, where the model has a memory that has to go through that, why a model that could
-    not be chosen is nearer to the truth (None where none is), and `noise` of a standing foot's angle, as much as there
-    can be, over the slip angle of a memory. `softened`: the share of its slope that the spring has lost where it is
-    bent most."""
+    """What one fit shows: used `seconds`, rms of deflection [rad], share of variance explained, `lag` of the torque [s]
+    that would make damping as negative (0 where it is not beyond doubt), the motion that contradicts the others (None
+    where they agree), the share of the time in which the sole leans, where the model has a memory that has to go
+    through that, why a model that could not be chosen is nearer to the truth (None where none is), and `noise` of a
+    standing foot's angle, as much as there can be, over the slip angle of a memory. `softened`: the share of its slope
+    that the spring has lost where it is bent most."""
 
     seconds: float
     excitation: float
     explained: float
-    not_passive: bool = False
+    lag: float = 0.0
     contradicted: ValidationRow | None = None
     leaning: float = 0.0
     caution: str | None = None
@@ -74,11 +75,9 @@ def judge(
     if evidence.seconds < LEAST_SECONDS:
         return "unidentifiable", f"only {evidence.seconds:.1f} s of samples can be used", advice
     if value <= 0 and interval[1] <= 0:
-        return (
-            "unidentifiable",
-            f"{term} is negative: something other than the bush produces this torque",
-            SIGNS,
-        )
+        late = f", as of a torque read {1e3 * evidence.lag:.0f} ms late or more" if evidence.lag else ""
+        said = f"{term} is negative{late}: something other than the bush produces this torque"
+        return "unidentifiable", said, LATE if late else SIGNS
     if not np.isfinite(half):
         return "unidentifiable", "its 95 % interval could not be worked out", advice
     if interval[0] <= 0:
@@ -92,12 +91,9 @@ def judge(
             f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}",
             advice,
         )
-    if evidence.not_passive:
-        return (
-            "weak",
-            "damping is negative: something other than the bush contributes to this torque",
-            advice,
-        )
+    if evidence.lag:
+        late = f"damping is negative, as of a torque read {1e3 * evidence.lag:.0f} ms late or more"
+        return "weak", f"{late}: something other than the bush contributes to this torque", LATE
     if evidence.contradicted is not None:
         row = evidence.contradicted
         return (

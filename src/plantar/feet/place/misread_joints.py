@@ -7,14 +7,14 @@ the torque tells the two apart. Where a foot stands it is the other way round: s
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import Block, fit_blocks
+from plantar.estimation import Block, fit_blocks, least_left
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, recordings_of
@@ -59,7 +59,17 @@ def misread_joint_notes(
     if tangents[0].stances is None:
         return []
     alone = fit_blocks(tangents)
-    found = sorted(_misread(robot, recordings, wide, tangents, alone.values), key=lambda one: one.squares)
+    each = [_columns(robot, one, wide) for one in recordings_of(tangents, recordings)]
+    told = [np.column_stack([*columns.values()]) for columns in each]
+    left = BETTER * least_left(tangents, told) / alone.squares
+    if left.min() > 1:
+        return []
+    close = {kind: column for column, kind in enumerate(each[0]) if left[column] <= ALIKE}
+    fits = (
+        _misread(*kind, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
+        for kind, column in close.items()
+    )
+    found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
     if not found or not found[0].matters or alone.squares < BETTER * found[0].squares:
         return []
     alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
@@ -71,55 +81,44 @@ def misread_joint_notes(
     return [Note(MISREAD, "warning", text)]
 
 
-def _misread(
-    robot: RobotModel,
-    recordings: Sequence[Recording],
-    wide: AxisFit,
-    tangents: Sequence[Block],
-    usual: Array,
-) -> Iterator[Misread]:
-    """Each joint that is surely misread, one at a time; usual: (k,), the values with all as they are read."""
-    chosen = recordings_of(tangents, recordings)
-    columns = [_columns(robot, one, wide) for one in chosen]
-    for joint, kind in columns[0]:
-        wider = all_beside(tangents, [own[joint, kind][:, None] for own in columns])
-        fit = fit_blocks(wider)
-        size, std = float(fit.values[-1]), float(fit.std[-1])
-        most = GAIN if kind == "gain" else LATE
-        if SURE * std < abs(size) < most and fit.condition_number < SINGULAR:
-            matters = not wide.holds(fit.values[:2] - usual[:2])
-            yield Misread(joint, kind, size, fit.squares, matters)
+def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual: Array) -> Misread | None:
+    """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
+    fit = fit_blocks(wider)
+    size, std = float(fit.values[-1]), float(fit.std[-1])
+    most = GAIN if kind == "gain" else LATE
+    if not (SURE * std < abs(size) < most and fit.condition_number < SINGULAR):
+        return None
+    return Misread(joint, kind, size, fit.squares, not wide.holds(fit.values[:2] - usual[:2]))
 
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
     """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
     each second by which it is read later."""
-    rows, columns = recording.rows(fit.foot), dict[tuple[str, str], Array]()
-    for joint, (shares, angle) in _turns(robot, recording, fit.foot).items():
-        rate = differentiate(angle, recording.period)
-        slope = differentiate(rate, recording.period)
+    columns = dict[tuple[str, str], Array]()
+    for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
-        for kind, turned, its_rate in (("gain", angle, rate), ("late", rate, slope)):
-            torque = fit.values[0] * turned[rows] + fit.values[1] * its_rate[rows]
-            columns[joint, kind] = own * np.nan_to_num(torque)
+        for kind, first in (("gain", 0), ("late", 1)):
+            columns[joint, kind] = own * (motion[:, first : first + 2] @ fit.values[:2])
     return columns
 
 
 def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:
-    """Of each joint between IMU and foot, how much of its turn is the bush's in pitch and roll, (n, 2) at the rows of a
-    fit, and its angle (N,) [rad] through the fit's filter."""
+    """Of each joint between IMU and foot, at the rows of a fit: how much of its turn is the bush's in pitch and roll,
+    (n, 2), and its angle [rad] through the fit's filter with two derivatives, (n, 3), zero where nothing is known."""
     key = (MISREAD, foot)  # both axes ask
     if key not in recording.kept:
-        log, rows, found = recording.log, recording.rows(foot), dict[str, tuple[Array, Array]]()
+        log, rows, period = recording.log, recording.rows(foot), recording.period
         positions, (orientation, _) = log.positions(robot), attitude(log, robot.required_imu, [])
-        path, still = path_to(robot, foot)[0], np.zeros((int(rows.sum()), 3))
-        for joint in path.joints:
-            turns = np.zeros_like(positions[rows])
+        path, stances = path_to(robot, foot)[0], recording.stances[foot]
+        angles = within_stances(positions[:, path.joints], period, recording.cutoff, stances)
+        rates = differentiate(angles, period)
+        motions = np.nan_to_num([each[rows] for each in (angles, rates, differentiate(rates, period))])
+        positions, orientation, found = positions[rows], orientation[rows], dict[str, tuple[Array, Array]]()
+        still = np.zeros((len(positions), 3))
+        for place, joint in enumerate(path.joints):
+            turns = np.zeros_like(positions)
             turns[:, joint] = 1.0
-            shares = foot_motion(path, positions[rows], turns, orientation[rows], still).encoder_rate
-            angle = within_stances(
-                positions[:, [joint]], recording.period, recording.cutoff, recording.stances[foot]
-            )
-            found[robot.joint_names[joint]] = (shares, angle[:, 0])
+            shares = foot_motion(path, positions, turns, orientation, still).encoder_rate
+            found[robot.joint_names[joint]] = (shares, motions[:, :, place].T)
         recording.kept[key] = found
     return cast(dict[str, tuple[Array, Array]], recording.kept[key])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def blocks_of(
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,
-                common_nuisance=step_columns(recording, foot, axis, rows) if steps else None,
+                common_nuisance=_step_columns(recording, foot, axis) if steps else None,
                 common_spread=PLACE_SPREAD if steps else None,
             )
         )
@@ -142,10 +143,22 @@ def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None)
 
 def _stance_rows(recording: Recording, foot: str) -> StanceRows:
     """The stance and the weight of each used sample; a foot that stands has one stance in all."""
-    stances, used = recording.stances[foot], recording.rows(foot)
-    if stances is None:
-        return StanceRows(np.zeros(int(used.sum()), dtype=np.intp), np.ones(int(used.sum())))
-    return StanceRows(stances.number[used], stances.weight[used])
+    key = ("stance rows", foot)  # every fit asks
+    if key not in recording.kept:
+        stances, used = recording.stances[foot], recording.rows(foot)
+        number, weight = np.zeros(int(used.sum()), dtype=np.intp), np.ones(int(used.sum()))
+        if stances is not None:
+            number, weight = stances.number[used], stances.weight[used]
+        recording.kept[key] = StanceRows(number, weight)
+    return cast(StanceRows, recording.kept[key])
+
+
+def _step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+    """`step_columns` of the used samples, (n, 5)."""
+    key = ("step columns", foot, axis)  # every fit asks
+    if key not in recording.kept:
+        recording.kept[key] = step_columns(recording, foot, axis, recording.rows(foot))
+    return cast(Array, recording.kept[key])
 
 
 def data_set_of(

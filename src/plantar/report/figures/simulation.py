@@ -18,6 +18,7 @@ GREEN: Final = "#5d7a00"
 VIOLET: Final = "#7b5ea7"
 CHEST: Final = ("chest pitch", "chest roll")
 OTHERS: Final = (GREEN, VIOLET, "#9a6a00", "#3d7ea6", "#a8b0b8")
+LEAST_WIDTH: Final = 9.0  # inches: the legend of four kinds of feet beside the record, on one line
 
 
 def replays(found: Sequence[Replayed], first: str) -> Drawing:
@@ -28,7 +29,8 @@ def replays(found: Sequence[Replayed], first: str) -> Drawing:
     labels = [f"{name}\n[mrad]" for name in CHEST]
     labels += [f"{foot} {axis}\ntorque [N·m]" for foot, axis in found[0].torque]
     motions = list(dict.fromkeys(one.motion for one in found))
-    figure, rows = panels(len(labels), len(motions), (3.1 * len(motions), 1.9 * len(labels)), "col")
+    size = max(3.1 * len(motions), LEAST_WIDTH), 1.9 * len(labels)
+    figure, rows = panels(len(labels), len(motions), size, "col")
     names = [name for name in dict.fromkeys(one.feet for one in found) if name != first]
     colours = {name: OTHERS[place % len(OTHERS)] for place, name in enumerate(names)} | {first: BLUE}
     for column, motion in enumerate(motions):

@@ -30,7 +30,7 @@ ROUNDS = 6
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
 LEAST_DISTINCT = 0.0015  # s, and by so much
-WELL_KNOWN = 0.003  # s: differences less well known than this are no ground for delays of their own
+WELL_KNOWN = 0.003  # s: differences less well known than this are looked for elsewhere as well
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
 APART = 0.001  # s: deviation by which sensors of one robot are read apart; a cycle of a bus of 1 kHz
 
@@ -135,11 +135,10 @@ def _step(
         variance = np.diag(contrasts @ free.covariance @ contrasts.T)
         spread = np.sqrt(variance + LEAST_STD**2)
         seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
-        differ, suspect = seem & (spread < WELL_KNOWN), bool((seem & (spread >= WELL_KNOWN)).any())
-        differ[:-1] = differ[:-1].any()
-        # What is known no better than by what is usual moves nothing; nor does anything beside what is much, not known.
-        known = (spread < APART) & (not suspect)
-        share = np.where(known, APART**2 / (APART**2 + spread**2), 0.0)
+        suspect = bool((seem & (spread >= WELL_KNOWN)).any())
+        differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
+        # What is known no better than by what is usual moves nothing.
+        share = np.where(spread < APART, APART**2 / (APART**2 + spread**2), 0.0)
         # What no model shows better is in the deviation of all feet's delay already.
         own = np.sqrt(np.append(variance[:-1], spread[-1] ** 2))
         usual, unsure = share * apart, np.where(share > 0, np.sqrt(share) * own, APART)
