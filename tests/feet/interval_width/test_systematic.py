@@ -14,7 +14,8 @@ from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
-from plantar.estimation import influences_of
+from plantar.estimation import Block, fit_blocks, influences_of
+from plantar.estimation.blocks import StanceRows
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
@@ -22,6 +23,7 @@ from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.interval_width.systematic import (
     _by_delay,
+    _angle_errors,
     _ends_of_stances,
     _shared_slope,
     _suspected_hardening,
@@ -246,6 +248,20 @@ def test_ends_of_stances_move_a_fit_beyond_what_fewer_samples_do_by_chance(
     cause = _ends_of_stances([Rows(stances=stances)])  # type: ignore[list-item]
     assert cause.effect == pytest.approx([4.0, 0.0])
     assert kept[0].tolist() == [*range(2, 18), *range(23, 47)]
+
+
+@pytest.mark.parametrize("wander", [0.0, 0.003])
+def test_an_attitude_that_wanders_from_step_to_step_draws_the_spring_to_zero(wander: float) -> None:
+    """As much as the torque that is left says, where all of it is the angle's; none is added to healthy walks."""
+    random, number = np.random.default_rng(4), np.arange(12000) // 100
+    angle = swayed(12000, 0.01)
+    seen = np.column_stack([angle + wander * np.repeat(random.standard_normal(2400), 5), np.gradient(angle)])
+    blocks = [Block("walk", seen, 400.0 * angle, 0.01, stances=StanceRows(number, np.ones(12000)))]
+    stiffness = fit_blocks(blocks).values[0]
+    cause = _angle_errors(SimpleNamespace(equivalent=(stiffness, 0.0)), blocks)  # type: ignore[arg-type]
+    assert cause.effect[0] == pytest.approx(400.0 - stiffness, rel=0.2, abs=1e-6)
+    assert (cause.effect[0] > 0.05 * 400.0) == (wander > 0)
+    assert cause.std == pytest.approx(1 / np.sqrt(3)), "anything from none to all of it"
 
 
 @pytest.mark.parametrize(("deviations", "suspected"), [(1.9, False), (2.1, True), (-2.1, True)])

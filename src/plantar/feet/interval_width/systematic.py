@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
+from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
@@ -43,8 +44,8 @@ def systematic_causes(
     vertical: VerticalStiffness,
     shared: bool,
 ) -> list[Cause]:
-    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances and what a
-    memory may share with the spring; of others a hardening that the model leaves out, zeros that
+    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances, errors of
+    the angle and what a memory may share with the spring; of others a hardening that the model leaves out, zeros that
     differ between stances, and for roll the zero of the yaw torque. `blocks`: the recordings' `tangent_blocks`."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     parts = [(one, one.rows(foot)) for one in recordings_of(blocks, recordings)]
@@ -70,6 +71,7 @@ def systematic_causes(
         return [
             *causes,
             _ends_of_stances(blocks),
+            _angle_errors(fit, blocks),
             *_shared_slope(fit, recordings),
         ]
     causes += _suspected_hardening(fit, blocks, shared)
@@ -114,6 +116,14 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     chance = np.maximum(less.std**2 - whole.std**2, 0.0)
     effect = np.sign(moved) * np.sqrt(np.maximum(moved**2 - chance, 0.0))
     return Cause("ends of stances", effect, UNIFORM)
+
+
+def _angle_errors(fit: AxisFit, blocks: Sequence[Block]) -> Cause:
+    """What stances leave of the torque may be the torque's error, and does nothing then, or all the angle's, as of an
+    attitude that wanders from step to step: that draws the spring towards zero."""
+    solution = StanceProblem.drawn_together(blocks).solve()
+    stiffness, size = fit.equivalent[0], blocks[0].regressor.shape[1]
+    return Cause("angle errors", solution.inverse[:size, 0] * solution.squares / stiffness, UNIFORM)
 
 
 def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
