@@ -44,7 +44,8 @@ def noise_after_filter(angles: Array, rates: Array, response: Array, period: flo
         return nothing
     white, turned = _mean_squares(period, cutoff)
     wide, narrow = (
-        (NORMAL * median(np.abs(_unexplained(part, whole, nothing.size).T))).reshape(nothing.shape) ** 2 / share
+        (NORMAL * median(np.abs(_unexplained(part, whole, nothing.size).T))).reshape(nothing.shape) ** 2
+        / share
         for part, share in zip((both - smooth, smooth - smoother), white[1:], strict=True)
     )
     found = np.minimum(wide, narrow)

@@ -22,8 +22,8 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.interval_width.systematic import (
-    _by_delay,
     _angle_errors,
+    _by_delay,
     _ends_of_stances,
     _shared_slope,
     _suspected_hardening,

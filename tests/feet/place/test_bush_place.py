@@ -207,7 +207,8 @@ def test_a_place_in_doubt_is_as_measured_as_before(measured: RobotModel) -> None
     """An arm that no bush has doubts the numbers, however far another foot's motions have widened the prior."""
     spread = PlaceSpread.of(measured, "left")
     wider = spread.doubted_by([placed("roll", 0.06, "bush_place")], [placed("roll", 0.01)])
-    assert wider.above == 0.06 and wider.measured
+    assert wider.above == 0.06
+    assert wider.measured
     guessed = replace(measured, guesses=(Guess("feet.left.bush", "drawn", 0.03),))
     assert not PlaceSpread.of(guessed, "left").measured
 
