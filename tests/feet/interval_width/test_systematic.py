@@ -26,6 +26,7 @@ from plantar.feet.interval_width.systematic import (
     _by_delay,
     _ends_of_stances,
     _shared_slope,
+    _softening,
     _suspected_hardening,
     systematic_causes,
 )
@@ -262,6 +263,20 @@ def test_an_attitude_that_wanders_from_step_to_step_draws_the_spring_to_zero(wan
     assert cause.effect[0] == pytest.approx(400.0 - stiffness, rel=0.2, abs=1e-6)
     assert (cause.effect[0] > 0.05 * 400.0) == (wander > 0)
     assert cause.std == pytest.approx(1 / np.sqrt(3)), "anything from none to all of it"
+
+
+@pytest.mark.parametrize(("model", "bends", "widened"), [
+    ("hardening", -5e4, 30.0), ("hardening", 5e4, 0.0), ("hardening_elastoplastic", -5e4, 0.0), ("kelvin_voigt", 0, 0),
+])  # fmt: skip
+def test_a_spring_that_seems_to_soften_may_be_a_sensor_that_bends(
+    model: str, bends: float, widened: float
+) -> None:
+    """By as much as its slope at zero is above its mean; what rubber does, to harden, and loops are not doubted."""
+    terms = MODELS[model].terms
+    values = np.array([{"stiffness": 430.0, "hardening": bends}.get(term, 1.0) for term in terms])
+    fit = SimpleNamespace(model=MODELS[model], values=values, equivalent=(400.0, 1.0))
+    causes = _softening(fit)  # type: ignore[arg-type]
+    assert [tuple(cause.effect) for cause in causes] == [(widened, *[0.0] * (len(terms) - 1))] * bool(widened)
 
 
 @pytest.mark.parametrize(("deviations", "suspected"), [(1.9, False), (2.1, True), (-2.1, True)])

@@ -45,13 +45,15 @@ REMEDY = {
     "slip angle": "record other motions of the same size: where an element begins to slip shows no nearer in these",
     "hidden memory": "record larger motions, standing and swaying: spring and hysteresis are one until rubber slips",
     "hardening": "record larger motions, or use --model hardening: the stiffness changes with the angle",
+    "softening": "load the force sensors with known torques, small and large: rubber hardens, and what seems to soften "
+    "may be a sensor that bends",
     "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
-    "delay", "encoders' delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain",
-    "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings",
+    "delay", "encoders' delay", "moment arm", "hardening", "softening", "yaw torque zero", ZEROS_OF_STANCES,
+    "force gain", "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9  # of the variance
