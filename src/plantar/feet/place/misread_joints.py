@@ -27,17 +27,15 @@ from plantar.signals.orientation import attitude
 MISREAD = "joint_misread"
 SURE = 5.0  # deviations of what is misread
 # Times less that is left of the squares than by the bush alone; play shows at its joint's turns only.
-BETTER = {"gain": 1.5, "late": 1.5, "play": 1.3}
+BETTER, BETTER_TURNING = 1.5, 1.3
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
-MOST = {"gain": 0.2, "late": 0.03, "play": 0.02}  # share; s; rad
+GAIN, LATE, PLAY = 0.2, 0.03, 0.02  # share; s; rad
 # Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
 # sign of its rate gives back half of what is missing.
 PART = 0.5
-SOFT, FAST = (
-    0.1,
-    98,
-)  # of the fast rate (a percentile), within which a joint's sign changes: behind a filter it is no step
+SOFT = 0.1  # of a joint's fast rate, within which its sign changes: behind a filter it is no step
+FAST = 98  # percentile
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
@@ -72,17 +70,19 @@ def misread_joint_notes(
     alone = fit_blocks(tangents)
     each = [_columns(robot, one, wide) for one in recordings_of(tangents, recordings)]
     told = [np.column_stack([*columns.values()]) for columns in each]
-    needed = np.array([BETTER[kind] for _, kind in each[0]])
+    needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in each[0]])
     left = needed * least_left(tangents, told) / alone.squares
     if left.min() > 1:
         return []
-    close = {kind: column for column, kind in enumerate(each[0]) if left[column] <= ALIKE}
+    close = {which: column for column, which in enumerate(each[0]) if left[column] <= ALIKE}
     fits = (
-        _misread(*kind, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
-        for kind, column in close.items()
+        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
+        for which, column in close.items()
     )
     found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
-    if not found or not found[0].matters or alone.squares < BETTER[found[0].kind] * found[0].squares:
+    if not found or not found[0].matters:
+        return []
+    if alone.squares < (BETTER_TURNING if found[0].kind == "play" else BETTER) * found[0].squares:
         return []
     alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
@@ -97,10 +97,9 @@ def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual
     """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
     fit = fit_blocks(wider)
     size, std = float(fit.values[-1]), float(fit.std[-1])
-    # No drive is ahead of its joint.
-    if not (
-        SURE * std < (size if kind == "play" else abs(size)) < MOST[kind] and fit.condition_number < SINGULAR
-    ):
+    most = {"gain": GAIN, "late": LATE, "play": PLAY}[kind]
+    away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
+    if not (SURE * std < away < most and fit.condition_number < SINGULAR):
         return None
     moved = (fit.values[:2] - usual[:2]) / (PART if kind == "play" else 1.0)
     return Misread(joint, kind, size, fit.squares, not wide.holds(moved))
