@@ -16,6 +16,7 @@ from plantar.conventions import Array, Mask
 from plantar.estimation.blocks import Block
 from plantar.estimation.linear import information_inverse
 from plantar.estimation.normal_equations import solved
+from plantar.estimation.stance_problem import StanceProblem, design
 from plantar.signals.filters import gain, low_pass
 from plantar.signals.medians import median
 from plantar.signals.segments import complete
@@ -92,6 +93,34 @@ def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool =
     if np.max(np.linalg.eigvals(share).real) > MOST:
         return None
     return np.asarray(np.linalg.solve(np.eye(size) - share, share @ values))
+
+
+def slow_attenuation(blocks: Sequence[Block], slope: float) -> Array:
+    """What errors of the first column may have taken off the values (k,) of a fit over stances, which change slowly, as
+    an attitude wanders: `slope` is the response's change with that column.
+
+    Within a stance they are nearly a parabola in time. What stances leave of the response along such curves may be the
+    response's own error, and takes nothing then, or all that column's.
+    """
+    solution, size = StanceProblem.drawn_together(blocks).solve(), blocks[0].regressor.shape[1]
+    along = solution.squares - sum(
+        _beside_parabolas(block, own, solution.values)
+        for block, own in zip(blocks, solution.own, strict=True)
+    )
+    return np.asarray(solution.inverse[:size, 0] * max(along, 0.0) / slope)
+
+
+def _beside_parabolas(block: Block, own: Array, values: Array) -> float:
+    """The weighted squares that a solution leaves in the stances of a block beside a parabola in time of each."""
+    assert block.stances is not None, "a block of a foot that steps"
+    left = block.response - design(block, own.size - 1) @ np.concatenate([values, own])
+    rest = 0.0
+    for rows in block.stances.split():
+        root = np.sqrt(block.stances.weight[rows])
+        curves = root[:, None] * np.linspace(-1.0, 1.0, len(rows))[:, None] ** np.arange(3)
+        missed = root * left[rows]
+        rest += float(np.sum((missed - curves @ np.linalg.lstsq(curves, missed, rcond=None)[0]) ** 2))
+    return rest
 
 
 def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool = False) -> dict[str, float]:

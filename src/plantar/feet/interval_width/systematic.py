@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
-from plantar.estimation.stance_problem import StanceProblem, design
+from plantar.estimation.errors_in_variables import slow_attenuation
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, has_memory, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
@@ -122,31 +122,8 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
 
 
 def _angle_errors(fit: AxisFit, blocks: Sequence[Block]) -> Cause:
-    """What an attitude that wanders from step to step may do, which draws the spring towards zero.
-
-    Within a stance it is nearly a parabola in time. What stances leave of the torque along such curves may be the
-    torque's error, and does nothing then, or all the angle's.
-    """
-    solution = StanceProblem.drawn_together(blocks).solve()
-    along = solution.squares - sum(
-        _beside_parabolas(block, own, solution.values)
-        for block, own in zip(blocks, solution.own, strict=True)
-    )
-    stiffness, size = fit.equivalent[0], blocks[0].regressor.shape[1]
-    return Cause("angle errors", solution.inverse[:size, 0] * max(along, 0.0) / stiffness, UNIFORM)
-
-
-def _beside_parabolas(block: Block, own: Array, values: Array) -> float:
-    """The weighted squares that a solution leaves in the stances of a block beside a parabola in time of each."""
-    assert block.stances is not None, "a block of a foot that steps"
-    left = block.response - design(block, own.size - 1) @ np.concatenate([values, own])
-    rest = 0.0
-    for rows in block.stances.split():
-        root = np.sqrt(block.stances.weight[rows])
-        curves = root[:, None] * np.linspace(-1.0, 1.0, len(rows))[:, None] ** np.arange(3)
-        missed = root * left[rows]
-        rest += float(np.sum((missed - curves @ np.linalg.lstsq(curves, missed, rcond=None)[0]) ** 2))
-    return rest
+    """What an attitude that wanders from step to step may do: anything from nothing to what would leave the torque."""
+    return Cause("angle errors", slow_attenuation(blocks, fit.equivalent[0]), UNIFORM)
 
 
 def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
