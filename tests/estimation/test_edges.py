@@ -194,16 +194,16 @@ def test_white_noise_behind_a_filter(cutoff: float, shown: bool) -> None:
     """Four cutoffs lie below 0.8 of 50 Hz; what is left is the variance times the mean square of the filter's gain."""
     random = np.random.default_rng(0)
     found = noise_after_filter(
-        random.normal(0, 0.3, (20000, 2)), random.normal(size=(20000, 1)), PERIOD, cutoff
-    )
+        *random.normal(0, 0.3, (2, 20000, 1)), random.normal(size=(20000, 1)), PERIOD, cutoff
+    ).ravel()
     share = np.tan(np.pi * PERIOD * np.linspace(0, 50, 5000, endpoint=False)) / np.tan(
         np.pi * PERIOD * cutoff
     )
     passed = 1 / (1 + share**8) ** 2
     assert found == pytest.approx(np.full(2, 0.09 * passed.mean() * shown), rel=0.15)
-    short = random.normal(size=(49, 2))
-    assert not noise_after_filter(short, random.normal(size=(49, 1)), PERIOD, 2.0).any()
-    assert noise_after_filter(np.tile(short, (4, 1)), random.normal(size=(196, 1)), PERIOD, 2.0).all()
+    short = random.normal(size=(2, 49, 1))
+    assert not noise_after_filter(*short, random.normal(size=(49, 1)), PERIOD, 2.0).any()
+    assert noise_after_filter(*np.tile(short, (1, 4, 1)), random.normal(size=(196, 1)), PERIOD, 2.0).all()
 
 
 def stepping(rows: int, means: list[tuple[float, float]], weight: float = 0.5) -> Block:

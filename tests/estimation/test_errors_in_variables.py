@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
@@ -16,7 +17,7 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
-from plantar.signals.filters import low_pass
+from plantar.signals.filters import differentiate, low_pass
 
 PERIOD, CUTOFF = 0.005, 5.0
 VALUES = np.array([400.0, 20.0])
@@ -36,7 +37,7 @@ def block(seed: int, sizes: tuple[float, float]) -> Block:
     true = signals(seed)
     noisy = true + random.standard_normal(true.shape) * sizes
     torque = (true @ VALUES + 0.05 * random.standard_normal(len(true)))[:, None]
-    noise = noise_after_filter(noisy, torque, PERIOD, CUTOFF)
+    noise = noise_after_filter(noisy[:, :1], noisy[:, 1:], torque, PERIOD, CUTOFF).ravel()
     response = low_pass(torque, PERIOD, CUTOFF)[:, 0]
     return Block(str(seed), low_pass(noisy, PERIOD, CUTOFF), response, PERIOD, noise=noise)
 
@@ -46,7 +47,8 @@ def test_noise_is_measured_above_the_motion_and_followed_through_the_filter() ->
     white, torque = sizes * random.standard_normal((200_000, 2)), random.standard_normal((200_000, 1))
 
     def measured(raw: Array, every: int = 1) -> Array:
-        return noise_after_filter(raw[::every], torque[: len(raw) : every], every * PERIOD, CUTOFF)
+        (angle, rate), other = raw[::every].T[:, :, None], torque[: len(raw) : every]
+        return noise_after_filter(angle, rate, other, every * PERIOD, CUTOFF).ravel()
 
     expected = low_pass(white, PERIOD, CUTOFF).var(axis=0)
     np.testing.assert_allclose(measured(white), expected, rtol=0.05)
@@ -59,22 +61,40 @@ def test_what_rings_at_one_frequency_is_no_white_noise() -> None:
     """Of two bands, just below and above 20 Hz, the quieter one tells."""
     random = np.random.default_rng(6)
     white, torque = 0.01 * random.standard_normal((100_000, 1)), random.standard_normal((100_000, 1))
-    plain = noise_after_filter(white, torque, PERIOD, CUTOFF)
+    quiet = 1e-6 * random.standard_normal((100_000, 1))
+
+    def of_both(noise: Array) -> Array:
+        return np.array([noise_after_filter(*each, torque, PERIOD, CUTOFF)[place, 0]
+                         for place, each in enumerate([(noise, quiet), (quiet, noise)])])  # fmt: skip
+
+    plain = of_both(white)
     for frequency in (15.0, 45.0):
         ringing = 0.05 * np.sin(2 * np.pi * frequency * PERIOD * np.arange(len(white)))[:, None]
-        rung = noise_after_filter(white + ringing, torque, PERIOD, CUTOFF)
+        rung = of_both(white + ringing)
         np.testing.assert_allclose(rung, plain, rtol=0.2, err_msg=f"{frequency} Hz")
 
 
 def test_a_foot_that_shakes_with_its_torque_is_no_noise() -> None:
     random = np.random.default_rng(7)
     shaking = low_pass(random.standard_normal((40_000, 1)), PERIOD, 30.0)
-    angles = np.column_stack([shaking[:, 0], np.gradient(shaking[:, 0], PERIOD)])
+    angles = shaking, np.gradient(shaking, PERIOD, axis=0)
     noise = noise_after_filter(
-        angles, shaking * 5 + 0.1 * random.standard_normal(shaking.shape), PERIOD, CUTOFF
+        *angles, shaking * 5 + 0.1 * random.standard_normal(shaking.shape), PERIOD, CUTOFF
     )
-    alone = noise_after_filter(angles, random.standard_normal(shaking.shape), PERIOD, CUTOFF)
+    alone = noise_after_filter(*angles, random.standard_normal(shaking.shape), PERIOD, CUTOFF)
     assert (noise < 0.05 * alone).all()
+
+
+@pytest.mark.parametrize("band", [30.0, 60.0])
+def test_noise_of_encoders_that_were_differentiated_is_not_white(band: float) -> None:
+    """It grows with frequency: carried down from above as white noise it would be several times what it is."""
+    random = np.random.default_rng(8)
+    angle, torque = 0.002 * random.standard_normal((100_000, 1)), random.standard_normal((100_000, 1))
+    gyroscope = 0.02 * random.standard_normal(angle.shape)
+    for own, off in ((0.0, 0.2), (1.0, 0.5)):
+        rate = differentiate(low_pass(angle, PERIOD, band), PERIOD) + own * gyroscope
+        noise = noise_after_filter(angle, rate, torque, PERIOD, CUTOFF)[1, 0]
+        assert noise == pytest.approx(low_pass(rate, PERIOD, CUTOFF).var(), rel=off)
 
 
 def test_what_noise_takes_is_given_back() -> None:

@@ -62,12 +62,18 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/place/misread_joints.py", "a joint that moves no number is told",
-        "not wide.holds(fit.values[:2] - usual[:2])", "True",
+        "not wide.holds(moved)", "True",
+        ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "play turns with the joint instead of staying behind it",
+        "turns = np.tanh(", "turns = -np.tanh(",
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
         "feet/place/misread_joints.py", "any joint that explains a little is misread",
-        "alone.squares < BETTER * found[0].squares", "alone.squares < 0.0",
+        'alone.squares < (BETTER_TURNING if found[0].kind == "play" else BETTER) * found[0].squares',
+        "alone.squares < 0.0",
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(

@@ -15,11 +15,11 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/errors_in_variables.py", "the louder of two bands is the noise",
-        "np.minimum(*densities)", "np.maximum(*densities)",
+        "found = np.minimum(wide, narrow)", "found = np.maximum(wide, narrow)",
     ),
     Mutant(
         "estimation/errors_in_variables.py", "the filter passes amplitudes, not powers",
-        "np.mean(passed**2)", "np.mean(passed)",
+        "np.mean(each**2)", "np.mean(each)",
     ),
     Mutant(
         "estimation/slow_drift.py", "half as many cosines follow a drift",

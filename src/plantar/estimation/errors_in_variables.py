@@ -1,6 +1,6 @@
 """Noise in the regressors: it adds to their squares but to no product with the response, and so draws values to zero.
 
-White noise of angles and rates is measured far above the fit's cutoff, in what the torque there does not explain (a
+Noise of angles and rates is measured far above the fit's cutoff, in what the torque there does not explain (a
 foot that shakes is no noise), and followed through the filter; its expected share is taken off the regressor's
 products (W. A. Fuller, Measurement Error Models, Wiley 1987).
 """
@@ -16,6 +16,7 @@ from plantar.conventions import Array, Mask
 from plantar.estimation.blocks import Block
 from plantar.estimation.linear import information_inverse
 from plantar.estimation.normal_equations import solved
+from plantar.estimation.stance_problem import StanceProblem, design
 from plantar.signals.filters import gain, low_pass
 from plantar.signals.medians import median
 from plantar.signals.segments import complete
@@ -26,34 +27,44 @@ FEWEST = 50  # samples
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
-def noise_after_filter(raw: Array, response: Array, period: float, cutoff: float) -> Array:
-    """Variance (k,) that the white noise of unfiltered signals (N, k) has behind the filter at `cutoff` [Hz].
+def noise_after_filter(angles: Array, rates: Array, response: Array, period: float, cutoff: float) -> Array:
+    """Variances (2, k) that the noise of unfiltered angles and rates (N, k) has behind the filter at `cutoff` [Hz].
 
     `response` (N, m): other sensors' unfiltered signals; what moves with them or with their rates is no noise. The
-    lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Zero
-    where the samples are too slow to show any frequency without motion.
+    lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Rates that
+    were differentiated from angles carry these' noise, which grows with frequency: it is not carried down to the
+    filter's band as if it were white. Zero where the samples are too slow to show any frequency without motion.
     """
+    nothing = np.zeros((2, angles.shape[1]))
     if ABOVE * cutoff > 0.8 * 0.5 / period:
-        return np.zeros(raw.shape[1])
-    both = np.column_stack([raw, response])
+        return nothing
+    both = np.column_stack([angles, rates, response])
     smooth, smoother = (low_pass(both, period, share * cutoff) for share in (ABOVE, ABOVE / 2))
     whole = complete(smoother) & complete(both)
     if whole.sum() < FEWEST:
-        return np.zeros(raw.shape[1])
-    passed, *bands = _mean_squares(period, cutoff)
-    densities = [
-        (NORMAL * median(np.abs(_unexplained(part, whole, raw.shape[1]).T))) ** 2 / share
-        for part, share in zip((both - smooth, smooth - smoother), bands, strict=True)
-    ]
-    return np.asarray(np.minimum(*densities) * passed)
+        return nothing
+    white, turned = _mean_squares(period, cutoff)
+    wide, narrow = (
+        (NORMAL * median(np.abs(_unexplained(part, whole, nothing.size).T))).reshape(nothing.shape) ** 2
+        / share
+        for part, share in zip((both - smooth, smooth - smoother), white[1:], strict=True)
+    )
+    found = np.minimum(wide, narrow)
+    beside = np.minimum(wide[1], np.maximum(narrow[1] - narrow[0] * turned[1] / white[2], 0.0))
+    rate = np.minimum(found[1] * white[0], beside * white[0] + found[0] * turned[0])
+    return np.asarray([found[0] * white[0], rate])
 
 
 @lru_cache(maxsize=16)
-def _mean_squares(period: float, cutoff: float) -> tuple[float, float, float]:
-    """What is left of white noise behind the filter at `cutoff`, above `ABOVE` cutoffs, and just below."""
+def _mean_squares(period: float, cutoff: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """What is left of white noise behind the filter at `cutoff`, above `ABOVE` cutoffs, and just below; and of its
+    derivative (`differentiate`) [1/s²] behind the filter, and just below."""
     frequency = np.linspace(0.0, 0.5 / period, 2000, endpoint=False)
     passed, wide, narrow = (gain(frequency, period, share * cutoff) for share in (1, ABOVE, ABOVE / 2))
-    return float(np.mean(passed**2)), float(np.mean((1 - wide) ** 2)), float(np.mean((wide - narrow) ** 2))
+    turn = 2 * np.pi * frequency * period
+    slope = (8 * np.sin(turn) - np.sin(2 * turn)) / (6 * period)
+    white = tuple(float(np.mean(each**2)) for each in (passed, 1 - wide, wide - narrow))
+    return white, tuple(float(np.mean((slope * each) ** 2)) for each in (passed, wide - narrow))
 
 
 def _unexplained(band: Array, whole: Mask, count: int) -> Array:
@@ -82,6 +93,34 @@ def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool =
     if np.max(np.linalg.eigvals(share).real) > MOST:
         return None
     return np.asarray(np.linalg.solve(np.eye(size) - share, share @ values))
+
+
+def slow_attenuation(blocks: Sequence[Block], slope: float) -> Array:
+    """What errors of the first column may have taken off the values (k,) of a fit over stances, which change slowly, as
+    an attitude wanders: `slope` is the response's change with that column.
+
+    Within a stance they are nearly a parabola in time. What stances leave of the response along such curves may be the
+    response's own error, and takes nothing then, or all that column's.
+    """
+    solution, size = StanceProblem.drawn_together(blocks).solve(), blocks[0].regressor.shape[1]
+    along = solution.squares - sum(
+        _beside_parabolas(block, own, solution.values)
+        for block, own in zip(blocks, solution.own, strict=True)
+    )
+    return np.asarray(solution.inverse[:size, 0] * max(along, 0.0) / slope)
+
+
+def _beside_parabolas(block: Block, own: Array, values: Array) -> float:
+    """The weighted squares that a solution leaves in the stances of a block beside a parabola in time of each."""
+    assert block.stances is not None, "a block of a foot that steps"
+    left = block.response - design(block, own.size - 1) @ np.concatenate([values, own])
+    rest = 0.0
+    for rows in block.stances.split():
+        root = np.sqrt(block.stances.weight[rows])
+        curves = root[:, None] * np.linspace(-1.0, 1.0, len(rows))[:, None] ** np.arange(3)
+        missed = root * left[rows]
+        rest += float(np.sum((missed - curves @ np.linalg.lstsq(curves, missed, rcond=None)[0]) ** 2))
+    return rest
 
 
 def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool = False) -> dict[str, float]:

@@ -15,6 +15,7 @@ from plantar.signals.held import FEWEST, SHORTEST, can_be_held, coarse, held_in
 from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import longest_run, runs
 
+LOST_FRAMES = "lost_frames"
 TURNED = 0.02  # rad by which a joint moves, whose position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
@@ -210,4 +211,4 @@ def _lost_frames(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
             f"{1e3 * longest * log.period:.0f} ms at a time, {100 * lost / len(log):.0f} % of the log; does a bus lose "
             "frames? Delays and damping are less sure (valid: leave such cells empty)"
         )
-        yield Finding("lost_frames", text)
+        yield Finding(LOST_FRAMES, text)

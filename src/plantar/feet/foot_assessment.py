@@ -120,7 +120,8 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *(note for note in ready.notes if note.code in (*OF_MOMENTS, ATTITUDE_SCALE)),
     ]
     # Behind the others: a mass, a gain or a delay that is wrong looks like one. Steps hardly tell how far a bush is.
-    far = far_arms([fit]) if fitted.place.measured and not steps else []
+    # Bush and sensor have one height: what is far about one axis is trusted about neither.
+    far = far_arms([*fitted.fits.values()]) if fitted.place.measured and not steps else []
     # What is left of a foot on its edge is flat, and no number is doubted; what most of it could tell comes first.
     first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *(faults or far)]
     return FootFit(

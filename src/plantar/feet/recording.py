@@ -194,8 +194,7 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
         if stances is None:
             edges = run_ends(valid, round(FILTER_EDGE / cutoff / period))
             recording = recording.without(name, edges, Reason.FILTER_EDGE)
-        angles = np.hstack([state.deflection, state.rate])
-        noise[name] = noise_after_filter(angles, state.torque, period, cutoff).reshape(2, 2)
+        noise[name] = noise_after_filter(state.deflection, state.rate, state.torque, period, cutoff)
     turns = {
         name: within_stances(turns.reshape(-1, 6), period, cutoff, recording.stances[name]).reshape(-1, 2, 3)
         for name, turns in recording.imu_turns.items()

@@ -14,16 +14,19 @@ from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
-from plantar.estimation import influences_of
+from plantar.estimation import Block, fit_blocks, influences_of
+from plantar.estimation.blocks import StanceRows
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.interval_width.systematic import (
+    _angle_errors,
     _by_delay,
     _ends_of_stances,
     _shared_slope,
+    _softening,
     _suspected_hardening,
     systematic_causes,
 )
@@ -246,6 +249,39 @@ def test_ends_of_stances_move_a_fit_beyond_what_fewer_samples_do_by_chance(
     cause = _ends_of_stances([Rows(stances=stances)])  # type: ignore[list-item]
     assert cause.effect == pytest.approx([4.0, 0.0])
     assert kept[0].tolist() == [*range(2, 18), *range(23, 47)]
+
+
+@pytest.mark.parametrize(("wander", "noise", "share"), [(0.004, 0.0, 0.1), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
+def test_an_attitude_that_wanders_from_step_to_step_draws_the_spring_to_zero(
+    wander: float, noise: float, share: float
+) -> None:
+    """As much as the slow torque that is left says, where all of it is the angle's; healthy walks, and those with
+    quick noise of the torque, are hardly widened."""
+    time, number = 0.01 * np.arange(12000), np.arange(12000) // 100
+    angle = swayed(12000, 0.01)
+    slow = sum(np.sin(2 * np.pi * hertz * time + hertz) for hertz in (0.131, 0.217, 0.43)) / np.sqrt(3)
+    torque = 400.0 * angle + noise * np.random.default_rng(4).standard_normal(12000)
+    seen = np.column_stack([angle + wander * slow, np.gradient(angle)])
+    blocks = [Block("walk", seen, torque, 0.01, stances=StanceRows(number, np.ones(12000)))]
+    stiffness = fit_blocks(blocks).values[0]
+    cause = _angle_errors(SimpleNamespace(equivalent=(stiffness, 0.0)), blocks)  # type: ignore[arg-type]
+    assert 400.0 - stiffness == pytest.approx(share * 400.0, rel=0.3, abs=0.02 * 400.0)
+    assert cause.effect[0] == pytest.approx(share * 400.0, rel=0.3, abs=0.01 * 400.0)
+    assert cause.std == pytest.approx(1 / np.sqrt(3)), "anything from none to all of it"
+
+
+@pytest.mark.parametrize(("model", "bends", "widened"), [
+    ("hardening", -5e4, 30.0), ("hardening", 5e4, 0.0), ("hardening_elastoplastic", -5e4, 0.0), ("kelvin_voigt", 0, 0),
+])  # fmt: skip
+def test_a_spring_that_seems_to_soften_may_be_a_sensor_that_bends(
+    model: str, bends: float, widened: float
+) -> None:
+    """By as much as its slope at zero is above its mean; what rubber does, to harden, and loops are not doubted."""
+    terms = MODELS[model].terms
+    values = np.array([{"stiffness": 430.0, "hardening": bends}.get(term, 1.0) for term in terms])
+    fit = SimpleNamespace(model=MODELS[model], values=values, equivalent=(400.0, 1.0))
+    causes = _softening(fit)  # type: ignore[arg-type]
+    assert [tuple(cause.effect) for cause in causes] == [(widened, *[0.0] * (len(terms) - 1))] * bool(widened)
 
 
 @pytest.mark.parametrize(("deviations", "suspected"), [(1.9, False), (2.1, True), (-2.1, True)])

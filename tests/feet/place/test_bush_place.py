@@ -203,6 +203,16 @@ def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel, measure
     assert PlaceSpread.of(replace(robot, guesses=(Guess("imu", "by name"),)), "left").turned == 0.0
 
 
+def test_a_place_in_doubt_is_as_measured_as_before(measured: RobotModel) -> None:
+    """An arm that no bush has doubts the numbers, however far another foot's motions have widened the prior."""
+    spread = PlaceSpread.of(measured, "left")
+    wider = spread.doubted_by([placed("roll", 0.06, "bush_place")], [placed("roll", 0.01)])
+    assert wider.above == 0.06
+    assert wider.measured
+    guessed = replace(measured, guesses=(Guess("feet.left.bush", "drawn", 0.03),))
+    assert not PlaceSpread.of(guessed, "left").measured
+
+
 def test_a_sensor_zeroed_under_load_says_nothing_of_the_place(measured: RobotModel) -> None:
     feet = {name: replace(foot, contact="always") for name, foot in measured.feet.items()}
     assert not PlaceSpread.of(replace(measured, feet=feet), "left").deviations.any()

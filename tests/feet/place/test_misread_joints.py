@@ -40,6 +40,16 @@ def misread(log: MotionLog, joint: str, gain: float = 1.0, late: float = 0.0) ->
     )
 
 
+def with_play(log: MotionLog, joint: str, play: float) -> MotionLog:
+    """The log with one encoder whose drive has play [rad]: it follows only when the joint has turned by as much."""
+    name = f"joint.{joint}.position"
+    read = log.column(name).copy()
+    state = read[0]
+    for place, value in enumerate(read):
+        read[place] = state = min(max(state, value - play / 2), value + play / 2)
+    return log.with_columns({name: read})
+
+
 def said(found: FeetResult) -> list[str]:
     return [note.text for note in found.notes if note.code == MISREAD and note.severity == "warning"]
 
@@ -67,6 +77,20 @@ def test_the_joint_is_named_and_neither_number_is_usable(
     doubted = [row.axis for row in rows if "read otherwise" in row.reason]
     assert doubted == [axis, axis]
     assert all(row.verdict == "usable" for row in rows if row.axis not in (axis, "z"))
+
+
+@pytest.mark.parametrize(("play", "told"), [(0.0, False), (0.002, True)])
+def test_play_in_an_encoders_drive_is_told_with_its_half(
+    robot: RobotModel, walks: list[MotionLog], play: float, told: bool
+) -> None:
+    found = identify_feet(robot, [with_play(log, "left_ankle_roll", play) for log in walks], settings=LINEAR)
+    texts = said(found)
+    assert bool(texts) == told
+    if told:
+        (text,) = texts
+        named = text.partition("'left_ankle_roll' ")[2]
+        assert "mrad behind wherever it turns round" in named
+        assert float(named.split()[0]) == pytest.approx(1e3 * play / 2, rel=0.25)
 
 
 def test_a_leg_all_of_whose_joints_are_late_is_told_as_one(robot: RobotModel, walks: list[MotionLog]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from plantar.faults.channels import LOST_FRAMES
 from plantar.faults.dead_band import DEAD_BAND
 from plantar.faults.gyroscope import IMU_LATE
 from plantar.faults.standing import LEANS, LEANS_LITTLE
@@ -23,11 +24,11 @@ UNMENDED = frozenset(
     {
         "sign", LEANS, LEANS_LITTLE, "imu_turned", "wrench_turned", IMU_LATE, "gyroscope_frame", "gyroscope_scale",
         "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
-        FAR, BUSH_TURNED, DEAD_BAND,
+        FAR, BUSH_TURNED, DEAD_BAND, LOST_FRAMES,
     }
 )  # fmt: skip
-# Codes of warnings on sensors that lag: what they spoil is damping and memory.
-OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH, HYSTERESIS, TORQUES_LATE})
+# Codes of warnings on sensors that lag, or repeat what they read before: what they spoil is damping and memory.
+OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH, HYSTERESIS, TORQUES_LATE, LOST_FRAMES})
 ADVICE = "mend what the warning names, or leave this log out"
 
 

@@ -35,6 +35,7 @@ REMEDY = {
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
+    "angle errors": "use an attitude that wanders less from step to step, and encoders without noise or play",
     ZEROS_OF_STANCES: "keep the foot on the floor through a recording: put down again, it lands with another zero",
     "bush position": "measure where the bush's centre is beside the force sensor, and write it into the robot file "
     "(bush: xyz, and uncertainty: bush_position); or record larger motions, which show it",
@@ -44,13 +45,15 @@ REMEDY = {
     "slip angle": "record other motions of the same size: where an element begins to slip shows no nearer in these",
     "hidden memory": "record larger motions, standing and swaying: spring and hysteresis are one until rubber slips",
     "hardening": "record larger motions, or use --model hardening: the stiffness changes with the angle",
+    "softening": "load the force sensors with known torques, small and large: rubber hardens, and what seems to soften "
+    "may be a sensor that bends",
     "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
-    "delay", "encoders' delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain",
-    "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings",
+    "delay", "encoders' delay", "moment arm", "hardening", "softening", "yaw torque zero", ZEROS_OF_STANCES,
+    "force gain", "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9  # of the variance

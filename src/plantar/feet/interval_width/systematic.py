@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
+from plantar.estimation.errors_in_variables import slow_attenuation
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
-from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
+from plantar.feet.fit.hidden_memory import element_slope, has_memory, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.interval_width.cause import SINGULAR, Cause
 from plantar.feet.interval_width.yaw_zero import yaw_torque_zero, yaw_zeros
@@ -43,9 +44,12 @@ def systematic_causes(
     vertical: VerticalStiffness,
     shared: bool,
 ) -> list[Cause]:
-    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances and what a
-    memory may share with the spring; of others a hardening that the model leaves out, zeros that
-    differ between stances, and for roll the zero of the yaw torque. `blocks`: the recordings' `tangent_blocks`."""
+    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances, errors of
+    the angle and what a memory may share with the spring; of others a softening, a hardening that the model leaves out,
+    zeros that differ between stances, and for roll the zero of the yaw torque.
+
+    `blocks`: the recordings' `tangent_blocks`.
+    """
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     parts = [(one, one.rows(foot)) for one in recordings_of(blocks, recordings)]
     influences = influences_of(blocks, shared_offset=shared)
@@ -70,9 +74,10 @@ def systematic_causes(
         return [
             *causes,
             _ends_of_stances(blocks),
+            _angle_errors(fit, blocks),
             *_shared_slope(fit, recordings),
         ]
-    causes += _suspected_hardening(fit, blocks, shared)
+    causes += [*_softening(fit), *_suspected_hardening(fit, blocks, shared)]
     causes += _zeros_of_stances(
         blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
     )
@@ -114,6 +119,11 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     chance = np.maximum(less.std**2 - whole.std**2, 0.0)
     effect = np.sign(moved) * np.sqrt(np.maximum(moved**2 - chance, 0.0))
     return Cause("ends of stances", effect, UNIFORM)
+
+
+def _angle_errors(fit: AxisFit, blocks: Sequence[Block]) -> Cause:
+    """What an attitude that wanders from step to step may do: anything from nothing to what would leave the torque."""
+    return Cause("angle errors", slow_attenuation(blocks, fit.equivalent[0]), UNIFORM)
 
 
 def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
@@ -163,6 +173,17 @@ def _zeros_of_stances(
         freed.append(block.with_nuisance(own - own.mean(axis=0)))
     effect = fit_blocks(freed).values - fit_blocks(blocks).values
     return [Cause("zeros of stances", effect, UNIFORM)]
+
+
+def _softening(fit: AxisFit) -> list[Cause]:
+    """What a spring that loses slope as it bends may owe to its force sensor: rubber hardens, and an amplifier that
+    bends is steepest about its zero, where the stiffness is told. At most as much as its mean slope is less."""
+    terms = fit.model.terms
+    if has_memory(fit.model) or "hardening" not in terms or fit.values[terms.index("hardening")] >= 0:
+        return []
+    effect = np.zeros(len(fit.values))
+    effect[0] = fit.values[0] - fit.equivalent[0]
+    return [Cause("softening", effect, UNIFORM)]
 
 
 def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:

@@ -1,4 +1,5 @@
-"""Joints between IMU and foot that are not read as the robot file says: a few per cent too much, or late by themselves.
+"""Joints between IMU and foot that are not read as the robot file says: a few per cent too much, late by themselves, or
+behind by the play of their encoder's drive.
 
 While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
 too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
@@ -25,16 +26,22 @@ from plantar.signals.orientation import attitude
 
 MISREAD = "joint_misread"
 SURE = 5.0  # deviations of what is misread
-BETTER = 1.5  # times less is left of the squares than by the bush alone
+# Times less that is left of the squares than by the bush alone; play shows at its joint's turns only.
+BETTER, BETTER_TURNING = 1.5, 1.3
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
-GAIN, LATE = 0.2, 0.03  # share; s
+GAIN, LATE, PLAY = 0.2, 0.03, 0.02  # share; s; rad
+# Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
+# sign of its rate gives back half of what is missing.
+PART = 0.5
+SOFT = 0.1  # of a joint's fast rate, within which its sign changes: behind a filter it is no step
+FAST = 98  # percentile
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
 class Misread(NamedTuple):
-    """A joint, its `kind` of misreading, by how much it turns more [share] or is read later [s], the squares that are
-    then left, and whether another stiffness or damping follows, outside of its interval."""
+    """A joint, its `kind` of misreading, by how much it turns more [share], is read later [s] or is behind [rad], the
+    squares that are then left, and whether another stiffness or damping follows, outside of its interval."""
 
     joint: str
     kind: str
@@ -45,6 +52,8 @@ class Misread(NamedTuple):
     def __str__(self) -> str:
         if self.kind == "late":
             return f"'{self.joint}' {1e3 * abs(self.size):.2g} ms {'late' if self.size > 0 else 'early'}"
+        if self.kind == "play":
+            return f"'{self.joint}' {1e3 * self.size:.2g} mrad behind wherever it turns round"
         return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
 
 
@@ -61,22 +70,25 @@ def misread_joint_notes(
     alone = fit_blocks(tangents)
     each = [_columns(robot, one, wide) for one in recordings_of(tangents, recordings)]
     told = [np.column_stack([*columns.values()]) for columns in each]
-    left = BETTER * least_left(tangents, told) / alone.squares
+    needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in each[0]])
+    left = needed * least_left(tangents, told) / alone.squares
     if left.min() > 1:
         return []
-    close = {kind: column for column, kind in enumerate(each[0]) if left[column] <= ALIKE}
+    close = {which: column for column, which in enumerate(each[0]) if left[column] <= ALIKE}
     fits = (
-        _misread(*kind, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
-        for kind, column in close.items()
+        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
+        for which, column in close.items()
     )
     found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
-    if not found or not found[0].matters or alone.squares < BETTER * found[0].squares:
+    if not found or not found[0].matters:
+        return []
+    if alone.squares < (BETTER_TURNING if found[0].kind == "play" else BETTER) * found[0].squares:
         return []
     alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
         f"{wide.foot} {wide.axis}: the torque follows the angle far better with a joint that was read otherwise: "
-        f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders whose angles are the links', all "
-        "read at one moment)"
+        f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders without play, whose angles are the "
+        "links', all read at one moment)"
     )
     return [Note(MISREAD, "warning", text)]
 
@@ -85,20 +97,25 @@ def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual
     """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
     fit = fit_blocks(wider)
     size, std = float(fit.values[-1]), float(fit.std[-1])
-    most = GAIN if kind == "gain" else LATE
-    if not (SURE * std < abs(size) < most and fit.condition_number < SINGULAR):
+    most = {"gain": GAIN, "late": LATE, "play": PLAY}[kind]
+    away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
+    if not (SURE * std < away < most and fit.condition_number < SINGULAR):
         return None
-    return Misread(joint, kind, size, fit.squares, not wide.holds(fit.values[:2] - usual[:2]))
+    moved = (fit.values[:2] - usual[:2]) / (PART if kind == "play" else 1.0)
+    return Misread(joint, kind, size, fit.squares, not wide.holds(moved))
 
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
     """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
-    each second by which it is read later."""
+    each second by which it is read later, for each radian by which it stays behind its own rate."""
     columns = dict[tuple[str, str], Array]()
     for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
         for kind, first in (("gain", 0), ("late", 1)):
             columns[joint, kind] = own * (motion[:, first : first + 2] @ fit.values[:2])
+        fast = float(np.percentile(np.abs(motion[:, 1]), FAST))
+        turns = np.tanh(motion[:, 1] / (SOFT * fast)) if fast > 0 else np.zeros_like(own)
+        columns[joint, "play"] = own * fit.values[0] * turns
     # One bus often reads all joints of a leg.
     late = [column for (_, kind), column in columns.items() if kind == "late"]
     return columns | {(f"all joints to the {fit.foot} foot", "late"): np.sum(late, axis=0)}

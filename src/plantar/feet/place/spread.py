@@ -36,8 +36,11 @@ class PlaceSpread:
 
     @property
     def measured(self) -> bool:
-        """Whether the robot file knows the place better than FARTHEST is far: of a guess nothing is too far."""
-        return bool(CLEAR * max(self.aside, self.above) < FARTHEST[0])
+        """Whether the robot file knows the place better than FARTHEST is far: of a guess nothing is too far.
+
+        By `aside`, which is as the robot file has it: `above` grows where a foot's motions put the file in doubt.
+        """
+        return bool(CLEAR * self.aside < FARTHEST[0])
 
     @property
     def expected(self) -> Array:
