@@ -38,8 +38,8 @@ def tangent(prepared: list[FilteredDataSet]) -> tuple[Linearised, np.ndarray]:
     designs, effects = [], []
     for each in prepared:
         states = RUBBER.states(each.motion.deflection)
-        columns = np.column_stack([each.motion.deflection, each.motion.rate, states])
-        slid = np.cumsum(np.abs(states) == 1.0) == 0
+        columns = np.column_stack([each.motion.deflection, each.motion.rate, states])[:: each.every]
+        slid = (np.cumsum(np.abs(states) == 1.0) == 0)[:: each.every]
         designs.append(each.without_nuisance(columns[each.used]))
         effects.append(each.without_nuisance(slid[each.used].astype(float)))
     rows = [len(design) for design in designs]
@@ -57,7 +57,7 @@ def drifts_of(prepared: list[FilteredDataSet]) -> list[np.ndarray]:
 
 
 def durations_of(prepared: list[FilteredDataSet]) -> list[float]:
-    return [each.used.sum() * each.motion.period for each in prepared]
+    return [each.duration for each in prepared]
 
 
 def dense_ratio(prepared: list[FilteredDataSet], dense: np.ndarray) -> np.ndarray:

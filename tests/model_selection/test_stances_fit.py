@@ -111,7 +111,7 @@ def test_a_turn_between_two_samples_takes_nothing_off_the_slip_angle() -> None:
 def test_stances_take_the_rate_that_the_filter_leaves_and_states_that_of_the_path() -> None:
     data = shaken(1)
     (filtered,) = prepare_data_sets([data], cutoff=5.0)
-    assert filtered.every == 1 / (7 * 5.0 * PERIOD) // 1 > 1
+    assert filtered.every == 1 / (4 * 5.0 * PERIOD) // 1 > 1
     assert len(filtered.path) == len(filtered.motion) == len(data.motion)
     assert len(filtered.used) == len(filtered.motion.deflection[:: filtered.every])
     assert filtered.duration == pytest.approx(PERIOD * data.used.sum(), rel=0.05)

@@ -44,7 +44,8 @@ def test_white_deviations_are_those_of_the_dense_problem() -> None:
         rows.append(np.column_stack([each.base, plain, slope, own]))
     dense = np.vstack(rows)
     residual = np.concatenate(list(fit.residuals.values()))
-    spread = residual @ residual / (len(residual) - dense.shape[1])
+    every = prepared[0].every  # white are the samples that rows were taken of
+    spread = residual @ residual / (every * len(residual) - dense.shape[1])
     expected = np.sqrt(spread * np.diag(np.linalg.pinv(dense.T @ dense))[:4])
     np.testing.assert_allclose(fit.white_std, expected, rtol=0.1)  # corners of the law make derivatives rough
     assert (fit.std > expected).all(), "coloured residuals, and what had to be estimated beside"

@@ -16,6 +16,8 @@ from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_FITTED_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
+# Likewise, of those that a fit takes: the filter leaves a four hundredth of what is at their Nyquist frequency.
+ROWS_PER_CYCLE = 4
 THIN_BAND = 4.0  # cutoffs, that survive thinning
 # Likewise, of the path that a memory follows through short stances: of four, slip angles lack half a per cent.
 PATH_BAND = 6.0
@@ -134,7 +136,7 @@ class FilteredDataSet:
         path = slow if data_set.steps is None else quick
         if data_set.drift is not None:
             path = replace(path, deflection=path.deflection - data_set.drift)
-        every = max(1, int(1 / (motion.period * SAMPLES_PER_CYCLE * cutoff) + 1e-6))
+        every = max(1, int(1 / (motion.period * ROWS_PER_CYCLE * cutoff) + 1e-6))
         kept, used = smooth[::every], (data_set.used & known)[::every]
         own, steps = None, None if data_set.steps is None else data_set.steps.thinned(every)
         if drift and steps is None:

@@ -19,6 +19,7 @@ from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
+from plantar.signals.slow_cosines import without_slow_cosines
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_ARM = 0.003  # m, likewise as LEAST_GAIN
@@ -109,22 +110,10 @@ def _quick(signals: Iterable[Array], period: float) -> Iterator[tuple[int, Array
     """Signals (n, 6) without what postures and drifting zeros do to them: some at a time, (n, 6 s), with the number of
     the first of these. All at once they would be the largest array of any log.
     """
-    rest, first, slow = iter(signals), 0, np.zeros((0, 0))
+    rest, first = iter(signals), 0
     while some := [*islice(rest, TOGETHER)]:
-        rows = np.hstack(some)
-        slow = slow if len(slow) else _slow_cosines(len(rows), period)
-        yield first, rows - slow @ (slow.T @ rows)
+        yield first, without_slow_cosines(np.hstack(some), period, SLOW)
         first += len(some)
-
-
-def _slow_cosines(count: int, period: float) -> Array:
-    """Orthonormal cosines (count, k) of `count` samples, down from those of a frequency SLOW.
-
-    A projection: a filter would hang all of a short segment on what its two ends happen to be.
-    """
-    order = np.arange(round(2 * SLOW * count * period) + 1)
-    cosines = np.cos(np.pi * order * (np.arange(count)[:, None] + 0.5) / count)
-    return np.asarray(cosines / np.linalg.norm(cosines, axis=0))
 
 
 def _put(rows: Array, first: int, some: Array) -> None:

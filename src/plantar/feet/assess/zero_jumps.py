@@ -32,6 +32,7 @@ EXPLAINS = 0.5  # of the squares that spring and damper leave of the recording
 NEARLY_ALL = 0.95  # likewise, of a sensor that is loose: the turns of a memory are not as sharp
 WORTH = 0.03  # of the recording's spread of torque: a smaller jump does no harm
 STATES = np.linspace(-1.0, 1.0, 21)  # of a memory at the start of a log
+ROUNDING = 1e-12  # of a column's squares: what pieces leave of it
 CODE = "zero_jump"
 
 
@@ -138,12 +139,28 @@ def _jumps(
 def _left_beside(missed: Array, rows: Sequence[int], block: Block, share: float = EXPLAINS) -> float | None:
     """What steps at these rows leave of the squares that are `missed` (n,), beside the block's own columns; None where
     they do not explain this share of what these leave, or are small."""
-    steps = np.where(np.arange(len(missed))[:, None] >= np.asarray(rows), 1.0, 0.0)
-    own = replace(block, response=missed, noise=None)
+    drift = np.zeros((len(missed), 0)) if block.nuisance is None else block.nuisance
+    columns = np.column_stack([block.regressor, drift, missed])
+    products = columns.T @ columns
     # A recording's own stiffness explains much of what the common one misses, without any step.
-    without, fit = (fit_blocks([each]) for each in (own, beside(own, steps)))
-    before, left = (each.residuals[block.label] for each in (without, fit))
-    most = left @ left < (1 - share) * float(before @ before)
+    before, _ = _between(columns, products, [0])
+    left, levels = _between(columns, products, [0, *rows])
     # The drift has taken most of a step: only beside it does the step have its size.
-    size = float(np.abs(fit.values[-len(rows) :]).max())
-    return float(left @ left) if most and size > WORTH * float(np.std(block.response)) else None
+    large = float(np.abs(np.diff(levels)).max()) > WORTH * float(np.std(block.response))
+    return left if large and left < (1 - share) * before else None
+
+
+def _between(columns: Array, products: Array, starts: Sequence[int]) -> tuple[float, Array]:
+    """The squares that the others leave of the last of the columns (n, k) beside a level in each piece from one of the
+    `starts` to the next, and these levels.
+
+    products: of the columns (k, k). Those about the means of pieces follow, so that many steps cost no more than one.
+    """
+    counts = np.diff([*starts, len(columns)])[:, None]
+    sums = np.add.reduceat(columns, starts)
+    about = products - sums.T @ (sums / counts)
+    scale = np.sqrt(np.maximum(np.diag(about), ROUNDING * np.diag(products) + np.finfo(float).tiny)[:-1])
+    inner = about[:-1, :-1] / np.outer(scale, scale)
+    solution = np.linalg.pinv(inner, ROUNDING, hermitian=True) @ (about[:-1, -1] / scale)
+    coefficients = np.append(-solution / scale, 1.0)
+    return float(coefficients @ about @ coefficients), sums @ coefficients / counts[:, 0]
