@@ -24,7 +24,7 @@ def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:
     """Stiffness of one foot in roll, in a rehearsal at each of two factors: the stiff one is as told."""
     fine = {"factor": 0.5, "half_width_percent": 2.0, "error_percent": 0.3, "usable": True}
     told = {"factor": 2.0, "half_width_percent": width, "error_percent": error, "usable": usable}
-    return [{"foot": "left", "axis": "roll", "name": "stiffness", "at": [fine, told]}]
+    return [{"foot": "left", "axis": "roll", "name": "stiffness", "error95_percent": 0.4, "at": [fine, told]}]
 
 
 def bent(roll: float) -> Any:
@@ -63,3 +63,19 @@ def test_a_foot_that_is_not_identified_is_weak() -> None:
     assert foretold(UNPLAYED, [row]) == [
         "left pitch will be weak at 1 times the stiffness told: damping not identified"
     ]
+
+
+def test_a_number_that_one_play_leaves_too_unsure_is_said_once_with_the_plays_it_takes() -> None:
+    """Noise goes with the root of what is played: 1.1 % off where 0.5 are wanted takes 2.2² of it."""
+    both = [
+        {**row, "foot": foot, "error95_percent": 1.1}
+        for foot in ("left", "right")
+        for row in rows(2.0, 0.3, usable=True)
+    ]
+    (note,) = foretold(UNPLAYED, both)
+    assert note.startswith("roll stiffness will be up to 1.1 % off, where 0.5 % are wanted")
+    assert note.endswith("5 plays of this motion that are identified together leave so little, or one with --duration 300")
+    (far,) = foretold(UNPLAYED, [{**both[0], "error95_percent": 2.0}])
+    assert far.endswith("16 plays of this motion that are identified together leave so little")
+    assert foretold(UNPLAYED, [{**both[0], "error95_percent": 0.5}]) == []
+    assert foretold(UNPLAYED, [{**both[0], "name": "damping", "error95_percent": 3.9}]) == []

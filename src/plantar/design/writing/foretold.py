@@ -1,4 +1,4 @@
-"""What a motion will not show, said before it is played: numbers that are weak or wrong in its rehearsals, and why."""
+"""What a motion will not show, said before it is played: numbers that are weak, wrong or wide in its rehearsals."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from typing import Any, Final
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
+from plantar.design.information import WANTED
 from plantar.design.rubber import SLIP_ANGLE
-from plantar.design.story import Design
+from plantar.design.story import LONGEST, Design
+from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
@@ -22,13 +24,16 @@ def foretold(found: Design, parameters: Sequence[Mapping[str, Any]]) -> list[str
 
     `parameters` as in MOTION.json.
     """
-    notes = []
+    notes, seen = list[str](), set[tuple[str, str]]()
     for (foot, axis), group in groupby(parameters, key=lambda row: (row["foot"], row["axis"])):
         rows = list(group)
         weak = sorted({one["factor"] for row in rows for one in row["at"] if not one["usable"]})
         if weak:
             notes.append(_weak(found, foot, axis, rows, weak))
         notes += [text for row in rows if (text := _wrong(row)) is not None]
+        usable = [row for row in rows if not weak and (axis, row["name"]) not in seen]
+        seen |= {(axis, row["name"]) for row in usable}
+        notes += [text for row in usable if (text := _wide(found.settings.duration, row)) is not None]
     return notes
 
 
@@ -76,4 +81,18 @@ def _wrong(row: Mapping[str, Any]) -> str | None:
     return (
         f"{row['foot']} {row['axis']} {row['name']} came out wrong at {at} times the stiffness told, by up to "
         f"{worst:.0f} %, and `identify feet` does not say so: do not use it"
+    )
+
+
+def _wide(duration: float, row: Mapping[str, Any]) -> str | None:
+    """A number that one play leaves more unsure than is wanted, and how much playing it takes: the mirror image of a
+    foot shows the same."""
+    wanted, off = 100 * dict(zip(KelvinVoigt().terms, WANTED, strict=True))[row["name"]], row["error95_percent"]
+    if off <= wanted:
+        return None
+    plays = int(np.ceil((off / wanted) ** 2))
+    longer = f", or one with --duration {plays * duration:g}" if plays * duration <= LONGEST else ""
+    return (
+        f"{row['axis']} {row['name']} will be up to {off:.2g} % off, where {wanted:g} % are wanted: noise, of which "
+        f"{plays} plays of this motion that are identified together leave so little{longer}"
     )
