@@ -74,7 +74,9 @@ def test_a_number_that_one_play_leaves_too_unsure_is_said_once_with_the_plays_it
     ]
     (note,) = foretold(UNPLAYED, both)
     assert note.startswith("roll stiffness will be up to 1.1 % off, where 0.5 % are wanted")
-    assert note.endswith("5 plays of this motion that are identified together leave so little, or one with --duration 300")
+    assert note.endswith(
+        "5 plays of this motion that are identified together leave so little, or one with --duration 300"
+    )
     (far,) = foretold(UNPLAYED, [{**both[0], "error95_percent": 2.0}])
     assert far.endswith("16 plays of this motion that are identified together leave so little")
     assert foretold(UNPLAYED, [{**both[0], "error95_percent": 0.5}]) == []

@@ -17,7 +17,9 @@ LATE = 0.005  # s, in the preset of the rehearsals
 ROLL = ("left", "roll", "stiffness")
 
 
-def drawn(*values: float | None, half: float = 4.0, feet: Sequence[str] = ("left",), axis: str = "roll") -> Rehearsal:
+def drawn(
+    *values: float | None, half: float = 4.0, feet: Sequence[str] = ("left",), axis: str = "roll"
+) -> Rehearsal:
     """At twice the stiffness told, a result of each draw; None is one in which nothing was found."""
     results = []
     for value in values:
@@ -66,7 +68,9 @@ def test_the_delay_is_that_of_the_worst_draw() -> None:
 
     shown = Rehearsal(1.0, results=(late(LATE + 1e-4, 2e-4), late(LATE - 3e-4, 1e-4)))
     assert promised.delay(shown) == pytest.approx((1.96 * 2e-4, -3e-4), rel=1e-4)
-    assert promised.delay(replace(shown, results=(late(LATE, 1e-4), late(LATE, 1e-4, measured=False)))) is None
+    assert (
+        promised.delay(replace(shown, results=(late(LATE, 1e-4), late(LATE, 1e-4, measured=False)))) is None
+    )
     assert promised.delay(replace(shown, results=(late(LATE, 1e-4), None))) is None
     assert promised.delay(Rehearsal(1.0)) is None
 

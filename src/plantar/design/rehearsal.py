@@ -42,8 +42,8 @@ class Rehearsal:
     `standing_margins` before it moves; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
-    played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `rollout`: how the
-    robot moved in its `world`; `results`: what `identify feet` finds in recordings of it.
+    played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `rollout`: how
+    the robot moved in its `world`; `results`: what `identify feet` finds in recordings of it.
     """
 
     factor: float

@@ -87,7 +87,8 @@ def _wrong(row: Mapping[str, Any]) -> str | None:
 def _wide(duration: float, row: Mapping[str, Any]) -> str | None:
     """A number that one play leaves more unsure than is wanted, and how much playing it takes: the mirror image of a
     foot shows the same."""
-    wanted, off = 100 * dict(zip(KelvinVoigt().terms, WANTED, strict=True))[row["name"]], row["error95_percent"]
+    wanted = 100 * dict(zip(KelvinVoigt().terms, WANTED, strict=True))[row["name"]]
+    off = row["error95_percent"]
     if off <= wanted:
         return None
     plays = int(np.ceil((off / wanted) ** 2))
