@@ -48,9 +48,11 @@ def test_errors_of_both_feet_and_all_draws_tell_what_a_play_is_off_by() -> None:
     """Told 50, so 100 is true here: errors of 1, 1, 3 and 3 %, of which 1.96 times the root mean square."""
     one = drawn(101.0, 97.0, feet=("left", "right"))
     assert promised.errors(one, *ROLL, 50.0) == pytest.approx([1.0, -3.0])
-    found = replace(design_samples.designed(), rehearsals=(one, drawn(100.5), Rehearsal(1.0)))
-    assert promised.error95(found, "roll", "stiffness", 50.0) == pytest.approx(1.96 * np.sqrt(5.0), rel=1e-4)
-    assert promised.error95(found, "pitch", "stiffness", 50.0) is None
+    feet = ("left", "right")
+    assert promised.error95(one, feet, "roll", "stiffness", 50.0) == pytest.approx(
+        1.96 * np.sqrt(5.0), rel=1e-4
+    )
+    assert promised.error95(one, feet, "pitch", "stiffness", 50.0) is None
 
 
 def test_a_number_is_usable_where_every_draw_says_so() -> None:

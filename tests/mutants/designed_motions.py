@@ -73,15 +73,15 @@ DESIGNED_MOTIONS = (
         "design/known.py", "a weak stiffness is no softer", "else SPRING * low", "else low", ("design/test_known.py",),
     ),
     Mutant(
-        "design/search.py", "all beginnings have the same frequencies", "default_rng([seed, place])", "default_rng(seed)",
-        QUICK,
+        "design/search.py", "all beginnings have the same frequencies",
+        "default_rng([seed, place])", "default_rng(seed)", QUICK,
     ),
     Mutant(
-        "design/writing/promised.py", "the widest draw is not promised", "for (low, high), value in known), default=None)",
-        "for (low, high), value in known[:1]), default=None)", ("design/test_promised.py",),
+        "design/writing/promised.py", "the widest draw is not promised",
+        "for (low, high), value in known)", "for (low, high), value in known[:1])", ("design/test_promised.py",),
     ),
     Mutant(
-        "design/writing/promised.py", "a play is off by the mean", "np.mean(np.square(own))", "np.mean(own) ** 2",
+        "design/writing/promised.py", "a play is off by the mean", "np.mean(np.square(found))", "np.mean(found) ** 2",
         ("design/test_promised.py",),
     ),
     Mutant(

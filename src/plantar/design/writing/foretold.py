@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any, Final
 
 import numpy as np
@@ -16,6 +16,7 @@ from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
+WANTED_OF: Final = dict(zip(KelvinVoigt().terms, WANTED, strict=True))
 TOLD_APART: Final = SLIP_ANGLE / SURE_SLIP_ANGLE  # rad, what `identify feet` asks for
 
 
@@ -24,16 +25,16 @@ def foretold(found: Design, parameters: Sequence[Mapping[str, Any]]) -> list[str
 
     `parameters` as in MOTION.json.
     """
-    notes, seen = list[str](), set[tuple[str, str]]()
+    notes = []
     for (foot, axis), group in groupby(parameters, key=lambda row: (row["foot"], row["axis"])):
         rows = list(group)
         weak = sorted({one["factor"] for row in rows for one in row["at"] if not one["usable"]})
         if weak:
             notes.append(_weak(found, foot, axis, rows, weak))
         notes += [text for row in rows if (text := _wrong(row)) is not None]
-        usable = [row for row in rows if not weak and (axis, row["name"]) not in seen]
-        seen |= {(axis, row["name"]) for row in usable}
-        notes += [text for row in usable if (text := _wide(found.settings.duration, row)) is not None]
+    for axis, name in product(ROTATIONAL_AXES, WANTED_OF):
+        rows = [row for row in parameters if (row["axis"], row["name"]) == (axis, name)]
+        notes += [text] if (text := _wide(found.settings.duration, axis, name, rows)) is not None else []
     return notes
 
 
@@ -84,16 +85,16 @@ def _wrong(row: Mapping[str, Any]) -> str | None:
     )
 
 
-def _wide(duration: float, row: Mapping[str, Any]) -> str | None:
-    """A number that one play leaves more unsure than is wanted, and how much playing it takes: the mirror image of a
-    foot shows the same."""
-    wanted = 100 * dict(zip(KelvinVoigt().terms, WANTED, strict=True))[row["name"]]
-    off = row["error95_percent"]
+def _wide(duration: float, axis: str, name: str, feet: Sequence[Mapping[str, Any]]) -> str | None:
+    """A number that one play leaves more unsure than is wanted where it is usable, and how much playing it takes."""
+    at = zip(*(row["at"] for row in feet), strict=True)
+    off = max((each[0]["error95_percent"] for each in at if all(one["usable"] for one in each)), default=0.0)
+    wanted = 100 * WANTED_OF[name]
     if off <= wanted:
         return None
     plays = int(np.ceil((off / wanted) ** 2))
     longer = f", or one with --duration {plays * duration:g}" if plays * duration <= LONGEST else ""
     return (
-        f"{row['axis']} {row['name']} will be up to {off:.2g} % off, where {wanted:g} % are wanted: noise, of which "
-        f"{plays} plays of this motion that are identified together leave so little{longer}"
+        f"{axis} {name} will be up to {off:.2g} % off, where {wanted:g} % are wanted: noise, of which {plays} plays of "
+        f"this motion that are identified together leave so little{longer}"
     )

@@ -67,18 +67,20 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         {
             "foot": foot, "axis": axis, "name": name, "unit": model.unit(name, axis), "value": values[name],
             "half_width_percent": widths[found.nominal.factor],
-            "error95_percent": promised.error95(found, axis, name, values[name]),
-            "at": [
-                {"factor": one.factor, "half_width_percent": widths[one.factor],
-                 "error_percent": max(promised.errors(one, foot, axis, name, values[name]), key=abs, default=None),
-                 "usable": promised.usable(one, foot, axis, name)}
-                for one in found.rehearsals
-            ],
+            "error95_percent": max(filter(None, (one["error95_percent"] for one in at)), default=None),
+            "at": at,
         }
         for foot in found.robot.feet
         for axis in ROTATIONAL_AXES
         for name in model.terms
         for widths in [promised.half_widths(found, foot, axis, name)]
+        for at in [[
+            {"factor": one.factor, "half_width_percent": widths[one.factor],
+             "error_percent": max(promised.errors(one, foot, axis, name, values[name]), key=abs, default=None),
+             "error95_percent": promised.error95(one, found.robot.feet, axis, name, values[name]),
+             "usable": promised.usable(one, foot, axis, name)}
+            for one in found.rehearsals
+        ]]
     ]  # fmt: skip
     way, speed = found.trajectory().limits_used()
     return {

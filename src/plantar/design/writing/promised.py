@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -24,16 +24,13 @@ def half_widths(found: Design, foot: str, axis: str, name: str) -> dict[float, f
     }
 
 
-def error95(found: Design, axis: str, name: str, truth: float) -> float | None:
-    """What 95 % of plays are off by at most, at the worst stiffness [% of the value]; None where nothing is identified.
+def error95(one: Rehearsal, feet: Iterable[str], axis: str, name: str, truth: float) -> float | None:
+    """What 95 % of plays are off by at most [% of the value]; None where nothing is identified.
 
-    Feet are mirrored: both show the same. `truth`: the value at the stiffness told.
+    Of `feet` together, which are mirrored: all show the same. `truth`: the value at the stiffness told.
     """
-    sizes = [
-        [error for foot in found.robot.feet for error in errors(one, foot, axis, name, truth)]
-        for one in found.rehearsals
-    ]
-    return max((NORMAL95 * float(np.sqrt(np.mean(np.square(own)))) for own in sizes if own), default=None)
+    found = [error for foot in feet for error in errors(one, foot, axis, name, truth)]
+    return NORMAL95 * float(np.sqrt(np.mean(np.square(found)))) if found else None
 
 
 def errors(one: Rehearsal, foot: str, axis: str, name: str, truth: float) -> list[float]:
