@@ -30,7 +30,7 @@ def drawn(
     return Rehearsal(2.0, results=tuple(results))
 
 
-def test_a_half_width_is_the_widest_of_all_draws_and_of_the_neighbours() -> None:
+def test_a_half_width_is_the_widest_of_all_draws_of_both_feet_and_of_the_neighbours() -> None:
     found = design_samples.designed()
     factors = [one.factor for one in found.rehearsals]
     widths = [1.0, 2.0, 3.0, None, 1.5, 0.5]
@@ -39,9 +39,13 @@ def test_a_half_width_is_the_widest_of_all_draws_and_of_the_neighbours() -> None
         for factor, wide in zip(factors, widths, strict=True)
     ]
     played[3] = replace(played[3], results=(None,))
-    played[4] = replace(played[4], results=(*played[4].results, *drawn(100.0, half=1.7).results))
-    of_each = promised.half_widths(replace(found, rehearsals=tuple(played)), *ROLL)
+    wider, opposite = drawn(100.0, half=1.7), drawn(100.0, half=2.5, feet=("right",))
+    played[4] = replace(played[4], results=(*played[4].results, *wider.results))
+    of_each = promised.half_widths(replace(found, rehearsals=tuple(played)), "roll", "stiffness")
     assert of_each == pytest.approx(dict(zip(factors, [2.0, 3.0, 3.0, None, 1.7, 1.7], strict=True)))
+    played[5] = replace(played[5], results=(*played[5].results, *opposite.results))
+    of_each = promised.half_widths(replace(found, rehearsals=tuple(played)), "roll", "stiffness")
+    assert of_each == pytest.approx(dict(zip(factors, [2.0, 3.0, 3.0, None, 2.5, 2.5], strict=True)))
 
 
 def test_errors_of_both_feet_and_all_draws_tell_what_a_play_is_off_by() -> None:

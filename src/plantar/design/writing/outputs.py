@@ -73,7 +73,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         for foot in found.robot.feet
         for axis in ROTATIONAL_AXES
         for name in model.terms
-        for widths in [promised.half_widths(found, foot, axis, name)]
+        for widths in [promised.half_widths(found, axis, name)]
         for at in [[
             {"factor": one.factor, "half_width_percent": widths[one.factor],
              "error_percent": max(promised.errors(one, foot, axis, name, values[name]), key=abs, default=None),

@@ -13,10 +13,16 @@ from plantar.results.feet import FeetResult, Parameter
 from plantar.twin.presets import DEFAULT, preset_named
 
 
-def half_widths(found: Design, foot: str, axis: str, name: str) -> dict[float, float | None]:
-    """By factor, the 95 % half width of a parameter that is promised [% of its value]; None where it is not identified:
-    the widest of a rehearsal's draws and its neighbours', as the robot's sensors will have other zeros and noise."""
-    own = [_percent(one, foot, axis, name) for one in found.rehearsals]
+def half_widths(found: Design, axis: str, name: str) -> dict[float, float | None]:
+    """By factor, the 95 % half width of a parameter that is promised [% of its value]; None where it is not identified.
+
+    The widest of all draws of a rehearsal and of its neighbours, as the robot's sensors will have other zeros and noise,
+    and of both feet, as what one shows the other's mirror image may.
+    """
+    own = [
+        _widest(row for foot in found.robot.feet for row in _rows(one.results, foot, axis, name))
+        for one in found.rehearsals
+    ]
     near = [own[max(place - 1, 0) : place + 2] for place in range(len(own))]
     return {
         one.factor: width and max(each for each in beside if each is not None)
@@ -73,8 +79,7 @@ def vertical(one: Rehearsal, truth: float) -> tuple[float, float] | None:
     return (max(halves), max(errors, key=abs)) if halves else None
 
 
-def _percent(one: Rehearsal, foot: str, axis: str, name: str) -> float | None:
-    rows = _rows(one.results, foot, axis, name)
+def _widest(rows: Iterable[Parameter]) -> float | None:
     known = [(row.interval95, row.value) for row in rows if row.interval95 is not None and row.value]
     return max((50 * (high - low) / abs(value) for (low, high), value in known), default=None)
 
