@@ -16,8 +16,8 @@ from plantar.twin.presets import DEFAULT, preset_named
 def half_widths(found: Design, axis: str, name: str) -> dict[float, float | None]:
     """By factor, the 95 % half width of a parameter that is promised [% of its value]; None where it is not identified.
 
-    The widest of all draws of a rehearsal and of its neighbours, as the robot's sensors will have other zeros and noise,
-    and of both feet, as what one shows the other's mirror image may.
+    The widest of all draws of a rehearsal and of its neighbours, as the robot's sensors will have other zeros and
+    noise, and of both feet, which are mirrored.
     """
     own = [
         _widest(row for foot in found.robot.feet for row in _rows(one.results, foot, axis, name))
