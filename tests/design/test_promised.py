@@ -17,35 +17,55 @@ LATE = 0.005  # s, in the preset of the rehearsals
 ROLL = ("left", "roll", "stiffness")
 
 
-def drawn(
-    *values: float | None, half: float = 4.0, feet: Sequence[str] = ("left",), axis: str = "roll"
-) -> Rehearsal:
+def drawn(*values: float | None, feet: Sequence[str] = ("left",), axis: str = "roll") -> Rehearsal:
     """At twice the stiffness told, a result of each draw; None is one in which nothing was found."""
     results = []
     for value in values:
         rows = [Mock(foot=foot, axis=axis, value=value, verdict="usable") for foot in feet]
         for row in rows:
-            row.name, row.interval95 = "stiffness", value and (value - half, value + half)
+            row.name, row.interval95 = "stiffness", value and (value - 4.0, value + 4.0)
         results.append(None if value is None else Mock(parameters=rows))
     return Rehearsal(2.0, results=tuple(results))
 
 
-def test_a_half_width_is_the_widest_of_all_draws_of_both_feet_and_of_the_neighbours() -> None:
-    found = design_samples.designed()
-    factors = [one.factor for one in found.rehearsals]
-    widths = [1.0, 2.0, 3.0, None, 1.5, 0.5]
-    played = [
-        replace(drawn(None if wide is None else 100.0, 100.0, half=wide or 0.0), factor=factor)
-        for factor, wide in zip(factors, widths, strict=True)
-    ]
-    played[3] = replace(played[3], results=(None,))
-    wider, opposite = drawn(100.0, half=1.7), drawn(100.0, half=2.5, feet=("right",))
-    played[4] = replace(played[4], results=(*played[4].results, *wider.results))
-    of_each = promised.half_widths(replace(found, rehearsals=tuple(played)), "roll", "stiffness")
-    assert of_each == pytest.approx(dict(zip(factors, [2.0, 3.0, 3.0, None, 1.7, 1.7], strict=True)))
-    played[5] = replace(played[5], results=(*played[5].results, *opposite.results))
-    of_each = promised.half_widths(replace(found, rehearsals=tuple(played)), "roll", "stiffness")
-    assert of_each == pytest.approx(dict(zip(factors, [2.0, 3.0, 3.0, None, 2.5, 2.5], strict=True)))
+def wide(*draws: tuple[float, float] | None, verdict: str = "usable") -> Rehearsal:
+    """Half widths of the left and the right foot in each draw [%]."""
+    results = []
+    for draw in draws:
+        rows = [
+            Mock(
+                foot=foot, axis="roll", value=100.0, interval95=(100.0 - half, 100.0 + half), verdict=verdict
+            )
+            for foot, half in zip(("left", "right"), draw or (), strict=draw is not None)
+        ]
+        for row in rows:
+            row.name = "stiffness"
+        results.append(None if draw is None else Mock(parameters=rows))
+    return Rehearsal(1.0, results=tuple(results))
+
+
+@pytest.mark.parametrize(
+    ("played", "widths"),
+    [
+        (
+            [wide((1.0, 1.5), (2.0, 1.0)), wide((3.0, 4.0)), wide((1.0, 1.0)), wide((1.0, 0.5))],
+            [4.0, 4.0, 4.0, 1.0],
+        ),
+        ([wide((1.0, 1.0)), wide((1.0, 1.0), (9.0, 1.0), verdict="weak"), wide((2.0, 2.0))], [1.0, 9.0, 2.0]),
+        ([wide((1.0, 1.0)), wide((5.0, 1.0), None), wide((2.0, 2.0)), wide(None)], [1.0, 5.0, 2.0, None]),
+    ],
+    ids=[
+        "the widest of draws, feet and neighbours",
+        "weak neighbours lend none",
+        "nor those found in some draws",
+    ],
+)
+def test_half_widths_are(played: list[Rehearsal], widths: list[float | None]) -> None:
+    rehearsals = tuple(replace(one, factor=float(place)) for place, one in enumerate(played))
+    found = promised.half_widths(
+        replace(design_samples.designed(), rehearsals=rehearsals), "roll", "stiffness"
+    )
+    assert list(found.values()) == pytest.approx(widths)
 
 
 def test_errors_of_both_feet_and_all_draws_tell_what_a_play_is_off_by() -> None:

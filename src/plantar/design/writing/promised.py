@@ -16,17 +16,23 @@ from plantar.twin.presets import DEFAULT, preset_named
 def half_widths(found: Design, axis: str, name: str) -> dict[float, float | None]:
     """By factor, the 95 % half width of a parameter that is promised [% of its value]; None where it is not identified.
 
-    The widest of all draws of a rehearsal and of its neighbours, as the robot's sensors will have other zeros and
-    noise, and of both feet, which are mirrored.
+    The widest of all draws of a rehearsal, as the robot's sensors will have other zeros and noise, of both feet, which
+    are mirrored, and of its neighbours where they are usable: where one is weak another law was found, which is of no
+    other stiffness.
     """
+    feet = found.robot.feet
     own = [
-        _widest(row for foot in found.robot.feet for row in _rows(one.results, foot, axis, name))
+        _widest(row for foot in feet for row in _rows(one.results, foot, axis, name))
         for one in found.rehearsals
     ]
-    near = [own[max(place - 1, 0) : place + 2] for place in range(len(own))]
+    lent = [
+        width if all(usable(one, foot, axis, name) for foot in feet) else None
+        for one, width in zip(found.rehearsals, own, strict=True)
+    ]
     return {
-        one.factor: width and max(each for each in beside if each is not None)
-        for one, width, beside in zip(found.rehearsals, own, near, strict=True)
+        one.factor: width
+        and max(each for each in (width, *lent[max(place - 1, 0) : place + 2]) if each is not None)
+        for place, (one, width) in enumerate(zip(found.rehearsals, own, strict=True))
     }
 
 
