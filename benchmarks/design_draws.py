@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,8 @@ def main() -> None:
         plan = own_plan(motion, robot)
         found: list[Rehearsal] = []
         for begin in range(0, given.draws, AT_ONCE):
-            found += rehearse(robot, plan, told, factors[begin : begin + AT_ONCE].tolist())
+            played = rehearse(robot, plan, told, factors[begin : begin + AT_ONCE].tolist())
+            found += [replace(one, rollout=None) for one in played]
         stood = [one for one in found if one.fell is None]
         for one in found:
             if one.fell is not None:

@@ -22,8 +22,14 @@ UNPLAYED = Design(
 
 def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:
     """Stiffness of one foot in roll, in a rehearsal at each of two factors: the stiff one is as told."""
-    fine = {"factor": 0.5, "half_width_percent": 2.0, "error_percent": 0.3, "usable": True}
-    told = {"factor": 2.0, "half_width_percent": width, "error_percent": error, "usable": usable}
+    fine = {
+        "factor": 0.5,
+        "half_width_percent": 2.0,
+        "error_percent": 0.3,
+        "error95_percent": 0.4,
+        "usable": True,
+    }
+    told = fine | {"factor": 2.0, "half_width_percent": width, "error_percent": error, "usable": usable}
     return [{"foot": "left", "axis": "roll", "name": "stiffness", "at": [fine, told]}]
 
 
@@ -58,8 +64,40 @@ def test_a_wrong_number_that_is_called_usable_is_said() -> None:
 
 
 def test_a_foot_that_is_not_identified_is_weak() -> None:
-    one = {"factor": 1.0, "half_width_percent": None, "error_percent": None, "usable": False}
+    one = {
+        "factor": 1.0,
+        "half_width_percent": None,
+        "error_percent": None,
+        "error95_percent": None,
+        "usable": False,
+    }
     row = {"foot": "left", "axis": "pitch", "name": "damping", "at": [one]}
     assert foretold(UNPLAYED, [row]) == [
         "left pitch will be weak at 1 times the stiffness told: damping not identified"
     ]
+
+
+def test_a_number_that_one_play_leaves_too_unsure_is_said_once_with_the_plays_it_takes() -> None:
+    """Noise goes with the root of what is played: 1.1 % off where 0.5 are wanted takes 2.2² of it. What is weak in one
+    foot is said elsewhere."""
+
+    def of_both(*errors95: float, name: str = "stiffness", weak: bool = False) -> list[dict[str, Any]]:
+        found = []
+        for foot in ("left", "right"):
+            (row,) = rows(2.0, 0.3, usable=True)
+            at = [one | {"error95_percent": own} for one, own in zip(row["at"], errors95, strict=True)]
+            at[1]["usable"] = not (weak and foot == "left")
+            found.append(row | {"foot": foot, "name": name, "at": at})
+        return found
+
+    (note,) = foretold(UNPLAYED, of_both(0.6, 1.1))
+    assert note.startswith("roll stiffness will be up to 1.1 % off, where 0.5 % are wanted")
+    assert note.endswith(
+        "5 plays of this motion that are identified together leave so little, or one with --duration 300"
+    )
+    (far,) = foretold(UNPLAYED, of_both(2.0, 0.3))
+    assert far.endswith("16 plays of this motion that are identified together leave so little")
+    assert foretold(UNPLAYED, of_both(0.5, 0.5)) == []
+    assert foretold(UNPLAYED, of_both(0.5, 3.9, name="damping")) == []
+    (weak,) = foretold(bent(0.013), of_both(0.5, 30.0, weak=True))
+    assert weak.startswith("left roll will be weak at 2 times")

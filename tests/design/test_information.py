@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import linprog
 
 import design_samples
+from plantar import cores
 from plantar.contact.polygon import inside_distance
 from plantar.conventions import NORMAL95
 from plantar.design import information as objective
@@ -32,7 +33,7 @@ from plantar.design.rubber import (
     SHARE,
     remembered,
 )
-from plantar.design.search import best_motion
+from plantar.design.search import best_motion, better_motion
 from plantar.design.soft_feet import Softness
 from plantar.twin.presets import SLIP_TORQUE
 from plantar.twin.robots import hrp2
@@ -225,12 +226,25 @@ def test_the_motion_found_is_at_its_limits_and_not_beyond() -> None:
 
 
 def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
-    def found(seed: int) -> np.ndarray:
-        with patch.object(search, "TRIES", 1):
-            return best_motion(design_samples.reach(), "A", np.random.default_rng(seed))
+    """On other frequencies, too: the best of all beginnings, each of which has its own."""
 
-    assert np.array_equal(found(2), found(2))
-    assert not np.array_equal(found(2), found(3))
+    def found(seed: int) -> tuple[Lines, np.ndarray]:
+        with patch.object(search, "TRIES", 1), patch.object(search, "STARTS", 2):
+            return best_motion(reach_on, 20.0, "A", seed)
+
+    def reach_on(lines: Lines) -> Reach:
+        reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
+        tried.append(lines.frequencies)
+        return reach
+
+    told, tried = design_samples.told(), list[np.ndarray]()
+    with patch.object(cores, "usable_cores", lambda: 1):
+        lines, motion = found(2)
+        assert np.array_equal(motion, found(2)[1])
+        own, others = tried[:2]
+        assert not np.array_equal(own, others)
+        assert any(np.array_equal(lines.frequencies, each) for each in (own, others))
+        assert not np.array_equal(lines.frequencies, found(3)[0].frequencies)
 
 
 def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
@@ -323,9 +337,8 @@ def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> 
     reach.element = 0 * reach.element
     units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
     slope = np.random.default_rng(3).standard_normal(units.size) / units
-    one = patch.object(search, "STARTS", 1)  # all of them lead there
-    with one, patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope):
-        found = best_motion(reach, "widest", np.random.default_rng(2))
+    with patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope):
+        found = better_motion(reach, "widest", 0.1 * units)  # every beginning leads there
     rows = reach._watched.reshape(reach.lines.size, -1).T
     high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))
     shares = np.vstack([rows / high[:, None], -rows / low[:, None]])

@@ -1,4 +1,4 @@
-"""What rehearsals make of a motion: smaller, larger, or as it is; and what they promise."""
+"""What rehearsals make of a motion: smaller, or as it is."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from plantar.design.story import (
     DesignSettings,
     design_motion,
 )
+from plantar.errors import DataError
 from plantar.motions.plan import Plan
 from plantar.twin.robots import hrp2
 from plantar.twin.simulation.physics import Physics
@@ -134,48 +135,42 @@ def test_a_rehearsal_takes_up_shares_of_each_limit(one: dict[str, Any], kind: st
     assert "180 % of its torque limit" in reason
 
 
-def test_a_promise_is_the_widest_of_a_rehearsal_and_its_neighbours() -> None:
-    found = design_samples.designed()
-    factors = [one.factor for one in found.rehearsals]
-    own = dict(zip(factors, [1.0, 2.0, 3.0, None, 1.5, 0.5], strict=True))
-    with patch.object(Rehearsal, "percent", lambda one, *_: own[one.factor]):
-        promised = found.half_widths("left", "roll", "stiffness")
-    assert promised == dict(zip(factors, [2.0, 3.0, 3.0, None, 1.5, 1.5], strict=True))
-
-
-def test_what_noise_makes_is_the_root_of_its_share_of_the_variance() -> None:
-    shares = {"noise": 0.09, "slip angle": 0.16, "sensor gain": 0.75}
-    row = Mock(foot="left", axis="roll", value=100.0, interval95=(96.0, 104.0))
-    row.name = "stiffness"
-    cause = Mock(foot="left", axis="roll", variance_shares=shares)
-    cause.name = "stiffness"
-    one = replace(FREE, result=Mock(parameters=[row], diagnosis=[cause]))
-    assert one.of_noise("left", "roll", "stiffness") == pytest.approx(4.0 * 0.5)
-    assert one.of_noise("left", "pitch", "stiffness") is None
-
-
-def test_each_rehearsal_has_its_own_draw_of_the_sensors_and_a_floor_for_its_steps() -> None:
+def test_each_draw_of_a_rehearsal_has_its_own_sensors_and_a_floor_for_its_steps() -> None:
     """A floor is told by stiffness k and damping c: a contact that steps of h hold still has c·h of 1, and c² = 4k of
     one that swings no more."""
-    seeds, worlds = list[int](), list[Physics]()
+    seeds, played = list[int](), list[Physics]()
 
     def record(_: object, robot: object, world: Physics, preset: object, seed: int) -> Mock:
-        worlds.append(world)
         seeds.append(seed)
-        return Mock()
+        return Mock(log=seed)
+
+    def roll_each(own: list[Any], _: object) -> list[Mock]:
+        played.extend(world for _, world in own)
+        return [Mock() for _ in own]
+
+    def identify(_: object, logs: list[int]) -> int:
+        if logs == [708]:
+            raise DataError("stands still")
+        return logs[0]
 
     with (
-        patch.object(rehearsal, "roll_each", lambda played, _: [Mock() for _ in played]),
+        patch.object(rehearsal, "roll_each", roll_each),
         patch.object(rehearsal, "record", record),
-        patch.object(rehearsal, "_measured", lambda factor, *_: Rehearsal(factor)),
+        patch.object(rehearsal, "identify_feet", identify),
+        patch.object(
+            rehearsal,
+            "_measured",
+            lambda factor, _, rollout, world: Rehearsal(factor, rollout=rollout, world=world),
+        ),
     ):
-        rehearsal.rehearse(hrp2.robot(), Mock(), design_samples.told(), [0.5, 0.707])
-        rehearsal.rehearse(hrp2.robot(), Mock(), design_samples.told(), [0.5])
-    assert seeds == [500, 707, 500]
-    stiffness, damping, _ = worlds[0].floor
-    assert damping * worlds[0].timestep == pytest.approx(1.0)
+        soft, told = rehearsal.rehearse(hrp2.robot(), Mock(), design_samples.told(), [0.5, 0.707])
+        assert soft.feet_found(hrp2.robot()) == (500, 501, 502, 503)
+        assert told.feet_found(hrp2.robot()) == (707, None, 709, 710)
+    assert seeds == [500, 501, 502, 503, 707, 708, 709, 710]
+    stiffness, damping, _ = played[0].floor
+    assert damping * played[0].timestep == pytest.approx(1.0)
     assert damping**2 == pytest.approx(4 * stiffness)
-    assert worlds[0].timestep == 2 * Physics().timestep
+    assert played[0].timestep == 2 * Physics().timestep
 
 
 @pytest.mark.parametrize("margin", [4e-4, 0.0, -2e-4, -1.0])

@@ -73,6 +73,22 @@ DESIGNED_MOTIONS = (
         "design/known.py", "a weak stiffness is no softer", "else SPRING * low", "else low", ("design/test_known.py",),
     ),
     Mutant(
+        "design/search.py", "all beginnings have the same frequencies",
+        "default_rng([seed, place])", "default_rng(seed)", QUICK,
+    ),
+    Mutant(
+        "design/writing/promised.py", "the widest draw is not promised",
+        "for (low, high), value in known)", "for (low, high), value in known[:1])", ("design/test_promised.py",),
+    ),
+    Mutant(
+        "design/writing/promised.py", "a play is off by the mean", "np.mean(np.square(found))", "np.mean(found) ** 2",
+        ("design/test_promised.py",),
+    ),
+    Mutant(
+        "design/writing/foretold.py", "plays go with what is missing", "(off / wanted) ** 2", "(off / wanted)",
+        ("design/test_foretold.py",),
+    ),
+    Mutant(
         "logs/save_mc_rtc.py", "the base turned the other way", "np.swapaxes(base[:, :3, :3], 1, 2)", "base[:, :3, :3]",
         ("design/test_controllers.py",),
     ),

@@ -11,14 +11,14 @@ from unittest.mock import patch
 import numpy as np
 
 from plantar import cores
-from plantar.design import search, story
+from plantar.design import rehearsal, search, story
 from plantar.design.family import Lines
 from plantar.design.information import Criterion
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
 from plantar.design.reach import Reach
 from plantar.design.rehearsal import Rehearsal, rehearse
-from plantar.design.search import best_motion
+from plantar.design.search import better_motion
 from plantar.design.soft_feet import Softness
 from plantar.design.story import Design, DesignSettings, design_motion
 from plantar.motions.plan import Plan
@@ -54,20 +54,29 @@ def reach() -> Reach:
 @cache
 def coefficients() -> np.ndarray:
     """Of a motion within the limits of `reach`."""
+    return from_one_beginning(reach(), "widest", 2)
+
+
+def from_one_beginning(reach: Reach, criterion: Criterion, seed: int) -> np.ndarray:
+    """Coefficients of a motion that took a few tries."""
+    start = 0.1 * np.random.default_rng(seed).standard_normal(reach.lines.size)
     with patch.object(search, "TRIES", TRIES):
-        return best_motion(reach(), "widest", np.random.default_rng(2))
+        return better_motion(reach, criterion, start)
 
 
 _searched: dict[bytes, np.ndarray] = {}
 
 
-def gentle_motion(reach: Reach, criterion: Criterion, random: np.random.Generator, *_: object) -> np.ndarray:
+def gentle_motion(
+    reach_on: Callable[[Lines], Reach], duration: float, criterion: Criterion, seed: int, *_: object
+) -> tuple[Lines, np.ndarray]:
     """Well within its limits, so that the first rehearsal holds; what comes from one seed is searched for once."""
-    key = pickle.dumps((reach.lines, reach.bushes, criterion, random.bit_generator.state))
+    lines = Lines.drawn(duration, np.random.default_rng(seed))
+    reach = reach_on(lines)
+    key = pickle.dumps((lines, reach.bushes, criterion))
     if key not in _searched:
-        with patch.object(search, "TRIES", TRIES):
-            _searched[key] = 0.4 * best_motion(reach, criterion, random)
-    return _searched[key]
+        _searched[key] = 0.4 * from_one_beginning(reach, criterion, seed)
+    return lines, _searched[key]
 
 
 class RehearsedOnce:
@@ -85,13 +94,13 @@ class RehearsedOnce:
 
 
 def identified_once(
-    found: dict[int, FeetResult | None],
-) -> Callable[[Rehearsal, RobotModel], FeetResult | None]:
-    """Rehearsals with one recording have one result: what is in their log is identified once, and kept in `found`."""
+    found: dict[int, tuple[FeetResult | None, ...]],
+) -> Callable[[Rehearsal, RobotModel], tuple[FeetResult | None, ...]]:
+    """Rehearsals with one rollout have one result, which is kept in `found`."""
     feet_found = Rehearsal.feet_found
 
-    def identify(own: Rehearsal, robot: RobotModel) -> FeetResult | None:
-        key = id(own.log)
+    def identify(own: Rehearsal, robot: RobotModel) -> tuple[FeetResult | None, ...]:
+        key = id(own.rollout)
         if key not in found:
             found[key] = feet_found(own, robot)
         return found[key]
@@ -106,6 +115,7 @@ def designed() -> Design:
         patch.object(story, "best_motion", gentle_motion),
         patch.object(story, "rehearse", RehearsedOnce()),
         patch.object(Rehearsal, "feet_found", identified_once({})),
+        patch.object(rehearsal, "DRAWS", 1),
         patch.object(cores, "usable_cores", lambda: 1),  # copies would identify it again
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))
@@ -116,7 +126,7 @@ def designed_again() -> Design:
     with (
         patch.object(story, "best_motion", gentle_motion),
         patch.object(story, "rehearse", lambda *_: list(designed().rehearsals)),
-        patch.object(Rehearsal, "feet_found", lambda own, _: own.result),
+        patch.object(Rehearsal, "feet_found", lambda own, _: own.results),
         patch.object(cores, "usable_cores", lambda: 1),
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))

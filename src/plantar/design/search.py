@@ -10,11 +10,11 @@ from scipy.optimize import linprog
 
 from plantar.conventions import Array
 from plantar.cores import over_cores
-from plantar.design.family import CHANNELS, SHAPES
+from plantar.design.family import CHANNELS, SHAPES, Lines
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
-# Of which the best end counts: limits have corners in which a way ends.
+# Of which the best end counts: limits have corners in which a way ends, and some frequencies go badly together.
 STARTS: Final = 8
 TRIES: Final = 25  # linear programs from each start at most
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
@@ -34,22 +34,31 @@ LOADED: Final = 1.0
 
 
 def best_motion(
-    reach: Reach,
+    reach_on: Callable[[Lines], Reach],
+    duration: float,
     criterion: Criterion,
-    random: np.random.Generator,
+    seed: int,
     known: Array | float = 0.0,
     progress: Callable[[str], None] = lambda _: None,
-) -> Array:
-    """Coefficients (size,) of the best motion within the limits; `known` as in `half_widths`.
+) -> tuple[Lines, Array]:
+    """Lines of a motion of `duration` [s], each beginning's own, and coefficients (size,) of the best one within the
+    limits on its lines; `known` as in `half_widths`.
 
     Limits are linear in the coefficients, but for rubber that slips, and there are many: a small sole bends far only
     where load, ankles and trunk go together. So each step goes as far down the slope of what is minimised as all
     limits and a box around the motion allow, which is a linear program.
     """
-    starts = [_start(random) / _alone(reach) for _ in range(STARTS)]
+
+    def end(place: int) -> tuple[float, Lines, Array]:
+        random = np.random.default_rng([seed, place])
+        lines = Lines.drawn(duration, random)
+        reach = reach_on(lines)
+        least, found = _end(reach, criterion, _start(random) / _alone(reach), known)
+        return least, lines, found
+
     progress(f"search from {STARTS} beginnings")
-    ends = over_cores(lambda start: _end(reach, criterion, start, known), starts)
-    return min(ends, key=lambda found: found[0])[1]
+    _, lines, coefficients = min(over_cores(end, range(STARTS)), key=lambda found: found[0])
+    return lines, coefficients
 
 
 def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:

@@ -98,22 +98,6 @@ class Design:
         """The motion with a share of its amplitude."""
         return Trajectory.of("design", self.legs, self.lines, share * self.coefficients)
 
-    def half_widths(self, foot: str, axis: str, name: str) -> dict[float, float | None]:
-        """By factor, the 95 % half width of a parameter that is promised [% of its value]; None where it is not
-        identified: the widest of a rehearsal's own and its neighbours', whose sensors have other zeros and noise, as
-        the robot's will have."""
-        found = [one.percent(foot, axis, name) for one in self.rehearsals]
-        near = [found[max(place - 1, 0) : place + 2] for place in range(len(found))]
-        return {
-            one.factor: own and max(each for each in beside if each is not None)
-            for one, own, beside in zip(self.rehearsals, found, near, strict=True)
-        }
-
-    def noise(self, foot: str, axis: str, name: str) -> float | None:
-        """What noise makes of it [% of its value], the worst of all rehearsals; None where none identifies it."""
-        found = [one.of_noise(foot, axis, name) for one in self.rehearsals]
-        return max((own for own in found if own is not None), default=None)
-
     @property
     def nominal(self) -> Rehearsal:
         """The rehearsal at the stiffness that was told."""
@@ -160,16 +144,20 @@ def design_motion(
     factors = (max(low, least) / stiffness, high / stiffness)
     damping = settings.damping if settings.damping is not None or known is None else known.damping
     told = Softness.told(robot, stiffness, damping)
-    random = np.random.default_rng(settings.seed)
-    lines = Lines.drawn(settings.duration, random)
     bushes = [told.times(factor) for factor in _rehearsed_at(*factors)]
-    reach = Reach(legs, linear, lines, told, bushes)
-    before = 0.0 if known is None else known.precision(reach.feet)
-    within = reach.held(np.full((len(bushes), len(KINDS)), LEFT))
+    before = 0.0 if known is None else known.precision(tuple(legs.bushes))
+    left = np.full((len(bushes), len(KINDS)), LEFT)
+
+    def reach_on(lines: Lines) -> Reach:
+        return Reach(legs, linear, lines, told, bushes)
+
+    lines, found = best_motion(
+        lambda lines: reach_on(lines).held(left), settings.duration, settings.criterion, settings.seed, before, progress
+    )  # fmt: skip
     motion = _Attempt(
-        reach,
+        reach_on(lines),
         lambda limits, start: better_motion(limits, settings.criterion, start, before),
-        best_motion(within, settings.criterion, random, before, progress),
+        found,
         _rehearsed_at(*factors),
     )
     coefficients, rehearsals, pairs = _rehearsed(motion, legs, told, progress)
@@ -297,7 +285,7 @@ def _rehearsed(
 def _with_results(robot: RobotModel, rehearsals: list[Rehearsal]) -> list[Rehearsal]:
     """The rehearsals with the feet identified from their recordings, as far as they can be."""
     results = over_cores(lambda one: one.feet_found(robot), rehearsals)
-    return [replace(one, result=result) for one, result in zip(rehearsals, results, strict=True)]
+    return [replace(one, results=found) for one, found in zip(rehearsals, results, strict=True)]
 
 
 def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:

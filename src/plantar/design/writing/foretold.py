@@ -1,19 +1,22 @@
-"""What a motion will not show, said before it is played: numbers that are weak or wrong in its rehearsals, and why."""
+"""What a motion will not show, said before it is played: numbers that are weak, wrong or wide in its rehearsals."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any, Final
 
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
+from plantar.design.information import WANTED
 from plantar.design.rubber import SLIP_ANGLE
-from plantar.design.story import Design
+from plantar.design.story import LONGEST, Design
+from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
+WANTED_OF: Final = dict(zip(KelvinVoigt().terms, WANTED, strict=True))
 TOLD_APART: Final = SLIP_ANGLE / SURE_SLIP_ANGLE  # rad, what `identify feet` asks for
 
 
@@ -29,6 +32,9 @@ def foretold(found: Design, parameters: Sequence[Mapping[str, Any]]) -> list[str
         if weak:
             notes.append(_weak(found, foot, axis, rows, weak))
         notes += [text for row in rows if (text := _wrong(row)) is not None]
+    for axis, name in product(ROTATIONAL_AXES, WANTED_OF):
+        rows = [row for row in parameters if (row["axis"], row["name"]) == (axis, name)]
+        notes += [text] if (text := _wide(found.settings.duration, axis, name, rows)) is not None else []
     return notes
 
 
@@ -76,4 +82,19 @@ def _wrong(row: Mapping[str, Any]) -> str | None:
     return (
         f"{row['foot']} {row['axis']} {row['name']} came out wrong at {at} times the stiffness told, by up to "
         f"{worst:.0f} %, and `identify feet` does not say so: do not use it"
+    )
+
+
+def _wide(duration: float, axis: str, name: str, feet: Sequence[Mapping[str, Any]]) -> str | None:
+    """A number that one play leaves more unsure than is wanted where it is usable, and how much playing it takes."""
+    at = zip(*(row["at"] for row in feet), strict=True)
+    off = max((each[0]["error95_percent"] for each in at if all(one["usable"] for one in each)), default=0.0)
+    wanted = 100 * WANTED_OF[name]
+    if off <= wanted:
+        return None
+    plays = int(np.ceil((off / wanted) ** 2))
+    longer = f", or one with --duration {plays * duration:g}" if plays * duration <= LONGEST else ""
+    return (
+        f"{axis} {name} will be up to {off:.2g} % off, where {wanted:g} % are wanted: noise, of which {plays} plays of "
+        f"this motion that are identified together leave so little{longer}"
     )

@@ -13,6 +13,7 @@ from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.reach import FRICTION
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import EFFORT, KEPT, Design
+from plantar.design.writing import promised
 from plantar.design.writing.controllers import TARGETS, ordered_joints
 from plantar.design.writing.foretold import foretold
 from plantar.design.writing.sheet import sheet
@@ -66,18 +67,20 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         {
             "foot": foot, "axis": axis, "name": name, "unit": model.unit(name, axis), "value": values[name],
             "half_width_percent": widths[found.nominal.factor],
-            "noise_percent": found.noise(foot, axis, name),
-            "at": [
-                {"factor": one.factor, "half_width_percent": widths[one.factor],
-                 "error_percent": one.error(foot, axis, name, values[name]),
-                 "usable": one.usable(foot, axis, name)}
-                for one in found.rehearsals
-            ],
+            "error95_percent": max(filter(None, (one["error95_percent"] for one in at)), default=None),
+            "at": at,
         }
         for foot in found.robot.feet
         for axis in ROTATIONAL_AXES
         for name in model.terms
-        for widths in [found.half_widths(foot, axis, name)]
+        for widths in [promised.half_widths(found, axis, name)]
+        for at in [[
+            {"factor": one.factor, "half_width_percent": widths[one.factor],
+             "error_percent": max(promised.errors(one, foot, axis, name, values[name]), key=abs, default=None),
+             "error95_percent": promised.error95(one, found.robot.feet, axis, name, values[name]),
+             "usable": promised.usable(one, foot, axis, name)}
+            for one in found.rehearsals
+        ]]
     ]  # fmt: skip
     way, speed = found.trajectory().limits_used()
     return {
@@ -100,7 +103,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             "at": [
                 {"factor": one.factor, "half_width": width, "error": error}
                 for one in found.rehearsals
-                for width, error in [one.delay() or (None, None)]
+                for width, error in [promised.delay(one) or (None, None)]
             ],
         },
         "vertical_compliance": {
@@ -110,7 +113,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             "at": [
                 {"factor": one.factor, "half_width_percent": width, "error_percent": error}
                 for one in found.rehearsals
-                for width, error in [one.vertical(told.vertical) or (None, None)]
+                for width, error in [promised.vertical(one, told.vertical) or (None, None)]
             ],
         },
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],

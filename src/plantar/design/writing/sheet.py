@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final
-
-from plantar.design.story import LONGEST
-
-TIMES: Final = 4  # the duration, of a longer motion that is spoken of
+from typing import Any
 
 
 def sheet(content: Mapping[str, Any], approach: bool) -> str:
@@ -22,7 +18,6 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
         if approach
         else "Make gentler versions with `--approach` and play those first."
     )
-    longer = min(TIMES * settings["duration"], LONGEST)
     touch = content["self_collision"]
     watched = (
         f"No links touched: {touch['pairs']} pairs were watched, by the URDF's collision geometry."
@@ -31,7 +26,7 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
     )
     rows = [
         f"| {one['foot']} | {one['axis']} | {one['name']} | {_number(one['half_width_percent'])} | "
-        f"{_number(one['noise_percent'])} |"
+        f"{_number(one['error95_percent'])} |"
         for one in content["parameters"]
     ]
     limits = [
@@ -80,12 +75,9 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "",
             "## What it promises",
             "",
-            "| foot | axis | parameter | 95 % half width [%] | noise alone, at the worst stiffness [%] |",
+            "| foot | axis | parameter | 95 % half width [%] | 95 % are off by less, at the worst stiffness [%] |",
             "|---|---|---|---|---|",
             *rows,
-            "",
-            f"What noise makes goes with the root of the duration: `--duration {longer:g}` leaves "
-            f"{100 * (settings['duration'] / longer) ** 0.5:.0f} % of it.",
             "",
             *_common(content),
             "",
