@@ -27,7 +27,7 @@ FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept 
     clock_doubt = first || steady > CLOCK_STEADY ? 0.0 : CLOCK_DOUBT;
     ticks = 1, known = false, steady = 0.0;
     slip.restart(), filter.restart(), turn_watch.restart(), weight_watch.restart();
-    for (JointWatch& watch : joint_watch) watch.restart();
+    for (const int j : moving) joint_watch[j].restart();
     return first ? Time::onward : Time::jumped;
   }
   dt = passed, steady += dt, clock_doubt = std::max(clock_doubt - dt, 0.0);
@@ -56,7 +56,7 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
   for (int i = 0; i < 4; ++i) {
     quaternion[i][0] = q[i];
     quaternion[i][1] = known ? q[i] + same * last_quaternion[i] : q[i];
-    quaternion[i][2] = q[i];
+    quaternion[i][2] = quaternion[i][3] = q[i];
   }
   if (!gyroscope && known) {  // the turn since the last tick, over its time
     const double* p = last_quaternion;
@@ -66,7 +66,7 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
     for (int i = 0; i < 3; ++i) w[i] = 2.0 * same * turn[i] / dt;
   }
   for (int i = 0; i < 3; ++i) {
-    angular_velocity[i][0] = angular_velocity[i][2] = w[i];
+    angular_velocity[i][0] = angular_velocity[i][2] = angular_velocity[i][3] = w[i];
     angular_velocity[i][1] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
     last_rate[i] = w[i];
   }
@@ -80,9 +80,8 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
 }
 
 void FootEstimator::State::joints(const Reading& reading) noexcept {
-  const std::size_t n = model.joints.size();
-  const bool given = reading.velocity.size() == n;
-  for (std::size_t j = 0; j < n; ++j) {
+  const bool given = reading.velocity.size() == model.joints.size();
+  for (const int j : moving) {
     const double q = reading.position[j], v = given ? reading.velocity[j] : 0.0;
     joint_bad[j] = 0;
     if (!all_finite({&q, 1}) || !all_finite({&v, 1})) {
@@ -93,7 +92,7 @@ void FootEstimator::State::joints(const Reading& reading) noexcept {
     if (joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
     const bool read = known && last_position[j] != UNREAD;
     const double difference = read ? (q - last_position[j]) / dt : 0.0;
-    position[TICKS * j] = position[TICKS * j + 2] = q;
+    position[TICKS * j] = position[TICKS * j + 2] = position[TICKS * j + 3] = q;
     position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
     velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
     last_position[j] = q;

@@ -13,7 +13,9 @@
 
 namespace plantar {
 
-constexpr int TICKS = 3;  // columns of the kinematics: this tick, half a period before, and the gyroscope alone
+// Columns of the kinematics: this tick, half a period before, the gyroscope alone, and that again: whole vectors are
+// read at once.
+constexpr int TICKS = 4;
 
 struct FootEstimator::State {
   explicit State(const EstimatorModel& given);
@@ -39,6 +41,7 @@ struct FootEstimator::State {
   DelayWatch imu_watch;                      // of the one IMU
   std::vector<DelayWatch> foot_delay_watch;  // of each alone
   std::vector<std::vector<ChainStep>> steps;
+  std::vector<int> moving;  // joints on the path of a foot: no other says anything of it
   std::vector<FootTracker> feet;
   std::vector<double> position, velocity, last_position;
   std::vector<JointWatch> joint_watch;

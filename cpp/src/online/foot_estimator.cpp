@@ -25,6 +25,17 @@ double checked_weight(const EstimatorModel& model) {
   return model.weight;
 }
 
+std::vector<int> on_paths(const EstimatorModel& model) {
+  std::vector<int> found;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j)
+    for (const FootModel& foot : model.feet)
+      if (std::ranges::any_of(foot.path, [j](const PathJoint& joint) { return joint.joint == j; })) {
+        found.push_back(j);
+        break;
+      }
+  return found;
+}
+
 // Of each joint, the one that is as far from another foot: -1 where none is, or both feet share it.
 std::vector<int> twins(const EstimatorModel& model) {
   std::vector<int> found(model.joints.size(), -1);
@@ -45,6 +56,7 @@ FootEstimator::State::State(const EstimatorModel& given)
       kernels(**runnable_kernels()),
       weight_watch(weight),
       foot_delay_watch(given.feet.size()),
+      moving(on_paths(given)),
       position(TICKS * given.joints.size()),
       velocity(TICKS * given.joints.size()),
       last_position(given.joints.size()),

@@ -103,6 +103,22 @@ def test_force_sensors_are_read_with_the_encoders_as_newton_ties_them() -> None:
     assert after < 0.15 * before
 
 
+def test_joints_that_hardly_move_tell_nothing_where_no_noise_hides_what_the_law_misses() -> None:
+    """A bush that hardens by a ten-thousandth passes for encoders that are late by far more than its deviation says."""
+    angle = swayed(COUNT)
+    torque = STIFFNESS * angle * (1 + 3e-4 * (angle / angle.std()) ** 2) + DAMPING * np.gradient(angle, PERIOD)
+    rates = np.column_stack([RATES, RATES])
+
+    def told(share: float) -> Late:
+        recording = replace(made_recording("sway", angle, torque), encoder_rates={FOOT: share * rates})
+        shown = encoders_shown(fitted(ready(recording)), NEWTON, 0.0)
+        assert shown is not None
+        return shown
+
+    assert told(1e-3).std == pytest.approx(NEWTON.std, rel=0.1)
+    assert told(1.0).std < 0.1 * NEWTON.std
+
+
 def test_where_no_joint_turns_newton_is_believed() -> None:
     still = replace(recorded(0.0), encoder_rates={FOOT: np.zeros((COUNT, 2))})
     assert encoders_shown(fitted(ready(still)), NEWTON, 0.0) is None
