@@ -106,7 +106,9 @@ def test_force_sensors_are_read_with_the_encoders_as_newton_ties_them() -> None:
 def test_joints_that_hardly_move_tell_nothing_where_no_noise_hides_what_the_law_misses() -> None:
     """A bush that hardens by a ten-thousandth passes for encoders that are late by far more than its deviation says."""
     angle = swayed(COUNT)
-    torque = STIFFNESS * angle * (1 + 3e-4 * (angle / angle.std()) ** 2) + DAMPING * np.gradient(angle, PERIOD)
+    torque = STIFFNESS * angle * (1 + 3e-4 * (angle / angle.std()) ** 2) + DAMPING * np.gradient(
+        angle, PERIOD
+    )
     rates = np.column_stack([RATES, RATES])
 
     def told(share: float) -> Late:
