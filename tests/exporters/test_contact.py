@@ -47,9 +47,10 @@ def exported(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     return out, export(result(urdf), "mujoco-contact", out, model=model)
 
 
-@pytest.mark.parametrize("axis", ROTATIONS)
-@pytest.mark.parametrize("foot", TRUTH)
-@pytest.mark.parametrize("share", [0.5, 1.0])
+@pytest.mark.parametrize(
+    ("foot", "axis", "share"),
+    [("left", "pitch", 0.5), ("left", "roll", 1.0), ("right", "pitch", 1.0), ("right", "roll", 0.5)],
+)
 def test_the_file_that_a_user_gets_turns_as_identified(
     exported: tuple[Path, Any], foot: str, axis: Axis, share: float
 ) -> None:
@@ -71,9 +72,9 @@ def test_the_file_that_a_user_gets_turns_as_identified(
         turn = data.xmat[ankle].reshape(3, 3)
         bush_axis = turn @ bush_rotation(foot)[:, place]
         at = data.xpos[ankle] + turn @ CENTRE
-        force = np.array([0.0, 0.0, -share * weight])
-        data.xfrc_applied[pelvis, :3] = force
-        data.xfrc_applied[pelvis, 3:] = np.cross(at - data.xipos[pelvis], force) + torque * bush_axis
+        x, y, _ = at - data.xipos[pelvis]
+        data.xfrc_applied[pelvis, 2] = -share * weight
+        data.xfrc_applied[pelvis, 3:] = share * weight * np.array([-y, x, 0.0]) + torque * bush_axis
         mujoco.mj_step(model, data)
         return float(2 * np.array(data.qpos[4:7]) @ bush_axis)
 

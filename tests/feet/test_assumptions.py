@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -13,8 +15,10 @@ from biped_robot import FEET, Frame, Mounting
 from feet_trials import noisy, shifted
 from plantar.conventions import NORMAL95
 from plantar.feet.assess.diagnosis import REMEDY
-from plantar.feet.assumptions import CAUSES
+from plantar.feet.assumptions import CAUSES, assumptions
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width.between_recordings import Apart
+from plantar.feet.prepare import PreparedLogs
 from plantar.feet.settings import FeetSettings
 from plantar.report.feet import feet_page
 from plantar.results.feet import FeetResult
@@ -81,6 +85,20 @@ def test_a_turned_imu_is_shown_about_its_axis(found: FeetResult) -> None:
         assert each.std is not None
         assert each.found == pytest.approx(true, abs=3 * each.std)
     assert about[2].std < TURN / 10
+
+
+def test_what_recordings_differ_by_is_as_sure_as_its_interval_is_narrow(usual: RobotModel) -> None:
+    """Of 95 % from 1 to 5 per cent: a normal deviation is half of that over 1.96."""
+    timing, still = SimpleNamespace(measured=False), SimpleNamespace(angles=(0.0, 0.0, 0.0))
+    ready = cast(
+        "PreparedLogs", SimpleNamespace(gain_errors={}, sensor_delay=timing, robot=usual, imu_turn=still)
+    )
+    for apart, expected in (
+        (Apart(0.02, 3, (0.01, 0.05)), (0.02, 0.04 / 3.92)),
+        (Apart(0.02, 3), (None, None)),
+    ):
+        (one,) = (each for each in assumptions(ready, [], apart) if each.name == "between_recordings")
+        assert (one.found, one.std) == (expected[0], expected[1] and pytest.approx(expected[1], rel=1e-3))
 
 
 def test_a_delay_that_no_log_shows_is_not_found(found: FeetResult) -> None:

@@ -48,11 +48,11 @@ def run(*words: object, where: Path, **environment: str) -> str:
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with `build` and `prefix`; the kernels of one instruction set alone, and hardly optimised test programs:
-    that takes a quarter of the time."""
+    """A folder with `build` and `prefix`; the kernels of one instruction set alone, hardly optimised, and the library's
+    files compiled as one, for they share their headers: that takes a fifth of the time."""
     folder = tmp_path_factory.mktemp("library")
     chosen = ("PLANTAR_TESTS=ON", "PLANTAR_INSTRUCTION_SETS=OFF", "PLANTAR_WARNINGS_AS_ERRORS=ON")
-    chosen += ("CMAKE_CXX_FLAGS_RELEASE=-O1",)
+    chosen += ("CMAKE_CXX_FLAGS_RELEASE=-O1", "CMAKE_UNITY_BUILD=ON", "CMAKE_UNITY_BUILD_BATCH_SIZE=0")
     run("cmake", "-S", ROOT, "-B", "build", *(f"-D{one}" for one in chosen), where=folder)
     run("cmake", "--build", "build", where=folder)
     run("cmake", "--install", "build", "--prefix", folder / "prefix", where=folder)

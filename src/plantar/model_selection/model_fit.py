@@ -22,18 +22,13 @@ from plantar.model_selection.variable_projection import (
     ITERATIONS,
     LANDING_GAIN,
     LANDING_ITERATIONS,
-    LANDINGS,
-    NARROWEST_SCAN,
     NARROWING,
-    SETTLED,
     WIDEST_SCAN,
     Point,
     Problem,
+    at_rest,
     best_candidate,
     landed,
-    scan,
-    scan_shape,
-    step,
 )
 from plantar.models import BESIDE, BushModel
 
@@ -147,35 +142,19 @@ def refine(
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
-    Where the foot steps, they go from the best of the states that the air leaves for each landing. A fit that had come
-    to rest (`rested`) with other torques keeps its landings and looks about it for corners only nearby. Not `refined`,
-    it stays at the start: enough to see that a model is wrong, as are deviations without what a fit takes up of noise.
+    Where the foot steps, they go from the better one of two guesses of the state at each landing: where steps lead, and
+    what the air leaves of that. A fit that had come to rest (`rested`) with other torques keeps its landings and looks
+    about it for corners only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong, as are
+    deviations without what a fit takes up of noise.
     """
-    remembers, best, point = problem.model.remembers, start, start
-    landings = LANDINGS if problem.lands and not rested else -1
-    searching = refined and bool(len(start.shape) or remembers)
-    while searching:
-        searching = landings >= 0  # the last one is the whole search
-        width = WIDEST_SCAN * (NARROWING if rested else 1.0)
-        for _ in range(LANDING_ITERATIONS if searching else ITERATIONS):
-            moved = step(problem, point, limits)
-            if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-                rest = moved or point
-                scanned = scan(problem, rest, width) if remembers else None
-                if remembers and scanned is None:
-                    scanned = scan_shape(problem, rest, limits, width)
-                width *= NARROWING
-                point = scanned or rest
-                if scanned is None and (not remembers or width < NARROWEST_SCAN):
-                    break
-            else:
-                point = moved
-        if searching and best is not start and point.squares > (1 - LANDING_GAIN) * best.squares:
-            point, landings = best, -1
-        else:
-            best, landings = point, landings - 1
-            point = landed(problem, best) if landings >= 0 else best
-    return _finished(problem, best, limits, refined)
+    if not refined or not (len(start.shape) or problem.model.remembers):
+        return _finished(problem, start, limits, refined)
+    if problem.lands and not rested:
+        found = at_rest(problem, start, limits, LANDING_ITERATIONS)
+        landing = at_rest(problem, landed(problem, found), limits, LANDING_ITERATIONS)
+        start = found if landing.squares > (1 - LANDING_GAIN) * found.squares else landing
+    width = WIDEST_SCAN * (NARROWING if rested else 1.0)
+    return _finished(problem, at_rest(problem, start, limits, ITERATIONS, width), limits, refined)
 
 
 def _finished(problem: Problem, point: Point, limits: Array, refined: bool) -> ModelFit:

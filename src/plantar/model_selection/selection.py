@@ -51,9 +51,8 @@ class ModelScore:
 class ModelChoice:
     """The chosen model's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
 
-    `untried` are models that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
-    holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions
-    made slip counts as part of the spring. `caution` says so where the motions show that there is one.
+    What holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions made
+    slip counts as part of the spring. `caution` says so where the motions show that there is one.
     """
 
     fit: ModelFit
@@ -61,7 +60,6 @@ class ModelChoice:
     ranking: tuple[ModelScore, ...]
     held_out: str
     reason: str
-    untried: tuple[str, ...]
     reach: float
     caution: str | None
 
@@ -90,7 +88,6 @@ def choose_model(
     rows = sum(len(fold) for fold in folds)
     motions = [each.motion for each in prepared]
     applicable = [model for model in models if model.applies(motions)]
-    untried = [model.name for model in models if model not in applicable]
     earlier = {} if before is None else {score.model.name: score.fit for score in before.ranking}
     simple = sorted(
         (
@@ -117,7 +114,6 @@ def choose_model(
             if place is not None:
                 simpler = scores[place].fit
                 if not _clear(scores, errors, least_gain, simple=linear, rich=place):
-                    untried.append(each.name)
                     continue
             candidate = Candidate.of(each, prepared, folds, shared_offset, simpler)
         most = HOPELESS * min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
@@ -132,7 +128,6 @@ def choose_model(
             start = again if rested else start
         fit = refine(problem, start, candidate.limits, refined=refined, rested=rested)
         if simpler is not None and not _adds(fit, simpler):
-            untried.append(fit.model.name)
             continue
         pieces = candidate.pieces_about(fit, prepared, folds) if refined else candidate.pieces
         squares = cross_validate(pieces, whole=whole, shared_offset=shared_offset)
@@ -149,7 +144,6 @@ def choose_model(
         ranking=tuple(sorted(ranking, key=lambda score: score.held_out_rms)),
         held_out=held_out,
         reason=_reason(chosen, scores[linear], held_out),
-        untried=tuple(untried),
         reach=reach(motions),
         caution=_caution(scores, errors, winner, least_gain),
     )

@@ -20,8 +20,7 @@ from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.models import BushModel
 
 ITERATIONS = 16  # at most, of a refinement
-LANDINGS = 3  # times that the states at landings are found anew with better parameters
-# Between these: it settles parameters and offsets, on which landings depend.
+# Before and after landings are found: it settles parameters and offsets, on which they depend.
 LANDING_ITERATIONS = 4
 LANDING_GAIN = 0.01  # relative fall of the squares below which other landings gain nothing
 WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
@@ -161,6 +160,27 @@ def landed(problem: Problem, point: Point) -> Point:
         bush = Hysteresis(problem.model, point.values, point.shape, float(offset))
         states.append(landing_states(bush, [each.path.deflection[run] for run in each.path.runs], begin))
     return problem.at(point.shape, np.concatenate(states))
+
+
+def at_rest(
+    problem: Problem, point: Point, limits: Array, iterations: int, width: float = WIDEST_SCAN
+) -> Point:
+    """Where steps and scans from a point come to rest. width: of the first scan, a share of the widest one."""
+    remembers = problem.model.remembers
+    for _ in range(iterations):
+        moved = step(problem, point, limits)
+        if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
+            point = moved
+            continue
+        rest = moved or point
+        scanned = scan(problem, rest, width) if remembers else None
+        if remembers and scanned is None:
+            scanned = scan_shape(problem, rest, limits, width)
+        width *= NARROWING
+        point = scanned or rest
+        if scanned is None and (not remembers or width < NARROWEST_SCAN):
+            break
+    return point
 
 
 def step(problem: Problem, point: Point, limits: Array) -> Point | None:

@@ -77,3 +77,16 @@ def test_a_torque_that_grows_at_less_than_half_of_its_slope_has_stopped(
     torque = STIFFNESS * np.where(ANGLE > BEND, BEND + share * (ANGLE - BEND), ANGLE)
     found = left_out(zeroed_under_load(robot), made_recording("tips", ANGLE, torque))
     assert (not found.used(FOOT).all()) == bent
+
+
+@pytest.mark.parametrize(("share", "bent"), [(0.35, True), (0.45, False)])
+def test_the_first_slope_is_that_of_the_first_half_of_the_rise(
+    robot: RobotModel, share: float, bent: bool
+) -> None:
+    """Rubber that grows softer after 40 % of the rise does not tip: its first half is soft already by a part."""
+    rise = np.maximum(ANGLE, 0.0)
+    reach = np.radians(2.5)
+    soft = 0.4 * reach * share / (0.6 + 0.4 * share)  # where 40 % of the rise is reached
+    torque = STIFFNESS * np.where(rise > soft, soft + share * (rise - soft), ANGLE)
+    found = left_out(zeroed_under_load(robot), made_recording("soft", ANGLE, torque))
+    assert (not found.used(FOOT).all()) == bent

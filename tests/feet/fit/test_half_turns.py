@@ -24,7 +24,7 @@ SLIP_ANGLE = 0.01
 def fit_of(model: str = "elastoplastic", caution: str | None = None) -> AxisFit:
     own = MODELS[model]
     size = len(own.terms) + len(own.shape_terms)
-    choice = ModelChoice(None, None, (), "", "", (), 0.02, caution)  # type: ignore[arg-type]
+    choice = ModelChoice(None, None, (), "", "", 0.02, caution)  # type: ignore[arg-type]
     return AxisFit(
         foot="left", axis="roll", model=own, values=np.ones(len(own.terms)),
         shape=np.full(len(own.shape_terms), SLIP_ANGLE), covariance=np.eye(size), freedom=np.full(size, 30.0),

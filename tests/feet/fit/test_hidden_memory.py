@@ -47,7 +47,7 @@ def axis_of(
         for name, values, error in scores
     ]
     ranking = tuple(sorted(every, key=lambda score: score.held_out_rms))
-    choice = ModelChoice(spring, spring, ranking, "", "", (), 0.004, caution)
+    choice = ModelChoice(spring, spring, ranking, "", "", 0.004, caution)
     return AxisFit(
         foot="left", axis="roll", model=spring.model, values=spring.values, shape=spring.shape,
         covariance=np.eye(2), freedom=np.full(2, 30.0), white_std=np.ones(2), offset_std={}, offsets={},
@@ -119,7 +119,7 @@ def test_in_short_stances_a_rival_counts_only_where_another_axis_shows_a_memory(
 
 def choice(model: str = "kelvin_voigt", reach: float = 2 * SMALL, caution: str | None = None) -> ModelChoice:
     fit = SimpleNamespace(model=MODELS[model])
-    return ModelChoice(fit, fit, (), "", "", (), reach, caution)  # type: ignore[arg-type]
+    return ModelChoice(fit, fit, (), "", "", reach, caution)  # type: ignore[arg-type]
 
 
 def test_sensors_that_may_be_late_leave_it_open() -> None:

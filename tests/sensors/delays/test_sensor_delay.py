@@ -32,8 +32,7 @@ def twin() -> RobotModel:
 
 @pytest.fixture(scope="module")
 def sweep(twin: RobotModel) -> MotionLog:
-    played = short(plan("Myrand5"), 0.0, 45.0)
-    return checked(twin, play_all([played], twin, PAPER, "sensors", [0])[0][0].log)
+    return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
 
 
 def late(log: MotionLog, columns: str, delay: float) -> MotionLog:

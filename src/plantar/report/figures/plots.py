@@ -6,23 +6,16 @@ blue (9 to 13), trace of the feet black, support polygon blue, ZMP red (4 and 6)
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Literal
-
-from plantar.errors import needs
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
 from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
-from plantar.errors import DataError
+from plantar.errors import DataError, needs
 from plantar.files import atomic_write
 from plantar.report.content import Figure, MediaType
 from plantar.results.residuals import Track
@@ -195,6 +188,7 @@ def _rendered(drawing: Drawing, kind: Format) -> bytes:
     metadata: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[kind]
     with matplotlib.rc_context(_SAVED):
         drawing.savefig(buffer, format=kind, dpi=140, metadata=metadata)
+    drawing.set_layout_engine("none")  # what is laid out once stays so, in every format
     return _few_colours(buffer) if kind == "png" else buffer.getvalue()
 
 
