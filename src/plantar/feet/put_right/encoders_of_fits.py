@@ -98,8 +98,10 @@ def encoders_shown(feet: Mapping[str, FittedFoot], told: Late, taken: float) -> 
             with gives_up(axis, one.given_up):
                 blocks = tangent_blocks(one.thin.fitted, fit, drift=not shared)
                 wider = with_late_encoders(fit, blocks, one.thin.fitted)
-                found = None if wider is None else fit_blocks(wider, shared_offset=shared)
-                if found is not None and found.condition_number <= SINGULAR:
+                if wider is None:
+                    continue
+                found = fit_blocks(wider, shared_offset=shared)
+                if found.condition_number <= SINGULAR:
                     values.append(taken + float(found.values[-1]))
                     variances.append(float(found.std[-1]) ** 2 + _missed(wider, shared) ** 2)
     if not values:
