@@ -29,7 +29,7 @@ FEET = (
     "settings", "recording", "coherent_band", "regression", "place", "fit", "interval_width", "exclusion", "assess",
     "internal_error", "prepare_log", "first_look", "prepare",
     "foot_fit", "foot_assessment", "put_right", "shared_hysteresis", "assumptions",
-    "result", "identify", "validate", "select_motions",
+    "result", "identify", "validate",
 )  # fmt: skip
 # Two identifications that know nothing of one another: what both need stands in an earlier room.
 APART = ("feet", "whole_body")

@@ -27,7 +27,7 @@ _HOMES = {
     "open_log": "logs.readers",
     "identify_feet": "feet.identify",
     "validate_feet": "feet.validate",
-    "select_motions": "feet.select_motions",
+    "select_motions": "motions.select_motions",
     "identify_inertia": "whole_body.inertia",
     "identify_joints": "whole_body.joints",
     "export": "exporters",
@@ -66,11 +66,11 @@ if TYPE_CHECKING:
     from plantar.exporters import export as export
     from plantar.exporters.contact.hysteresis import FootHysteresis as FootHysteresis
     from plantar.feet.identify import identify_feet as identify_feet
-    from plantar.feet.select_motions import select_motions as select_motions
     from plantar.feet.settings import FeetSettings as FeetSettings
     from plantar.feet.validate import validate_feet as validate_feet
     from plantar.logs.motion_log import MotionLog as MotionLog
     from plantar.logs.readers import open_log as open_log
+    from plantar.motions.select_motions import select_motions as select_motions
     from plantar.online.estimator import FootEstimator as FootEstimator
     from plantar.report.figures.loop import plot_torque as plot_torque
     from plantar.results.dynamics import DynamicsResult as DynamicsResult

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from plantar.campaign.choice import COMPOSED, TOGETHER, choice_rows, choice_table, explained
-from plantar.feet.select_motions import Choice, Selection
+from plantar.motions.select_motions import Choice, Selection
 
 
 def test_the_choice_of_motions_is_set_beside_the_papers() -> None:

@@ -13,7 +13,7 @@ from plantar.cli import compare, design, select
 from plantar.comparison import compare as comparison
 from plantar.design import story
 from plantar.design.writing import outputs
-from plantar.feet.select_motions import Choice, Selection
+from plantar.motions.select_motions import Choice, Selection
 
 KEYS = [("left", "pitch", "stiffness"), ("left", "pitch", "damping")]
 

@@ -16,8 +16,8 @@ from plantar.cli.identify.feet_tables import validation_table
 from plantar.cli.inspect import _foot_rows, _print
 from plantar.cli.online import _foot_row
 from plantar.cli.select import _table
-from plantar.feet.select_motions import UNKNOWN, Choice
 from plantar.inspection.log_summary import ColumnRange, FootSummary, LogSummary
+from plantar.motions.select_motions import UNKNOWN, Choice
 from plantar.online.estimates import FIELDS, Contact, Flag
 from plantar.online.replay import Replay
 from plantar.results.dynamics_rows import DynamicsScore, JointParameter

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-from plantar.feet.select_motions import UNKNOWN, Choice, Selection
+from plantar.motions.select_motions import UNKNOWN, Choice, Selection
 from plantar.report.content import Cell, Column, Table
 from plantar.report.verdict import symbol
 from plantar.results.numbers import MISSING, number, percent

@@ -21,11 +21,11 @@ from plantar.campaign.compared import (
 from plantar.campaign.replay import ReplayRow, candidates, hands_of, record_rows, replay_rows
 from plantar.errors import MotionError
 from plantar.feet.identify import identify_feet
-from plantar.feet.select_motions import Selection, select_motions
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.motions import CAMPAIGN, FIT
+from plantar.motions.select_motions import Selection, select_motions
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel, load_robot

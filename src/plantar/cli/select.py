@@ -10,8 +10,8 @@ import typer
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
-from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.logs.inputs import open_together
+from plantar.motions.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.results.feet_text import SYMBOLS
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot

@@ -12,11 +12,11 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.rehearsal import bush_of
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError
-from plantar.feet.select_motions import Selection, select_motions
 from plantar.logs.motion_log import MotionLog
 from plantar.models import KelvinVoigt
 from plantar.motions.campaign import CAMPAIGN
 from plantar.motions.plan import Plan
+from plantar.motions.select_motions import Selection, select_motions
 from plantar.robot.model import RobotModel
 from plantar.twin.play import planned, roll_each
 from plantar.twin.presets import DEFAULT, preset_named

@@ -12,7 +12,8 @@ from plantar.errors import DataError
 from plantar.estimation import fit_blocks
 from plantar.feet.prepare import prepare_all
 from plantar.feet.regression.regression_data import blocks_of
-from plantar.feet.select_motions import (
+from plantar.logs.motion_log import MotionLog
+from plantar.motions.select_motions import (
     SEVERAL,
     UNKNOWN,
     Choice,
@@ -22,7 +23,6 @@ from plantar.feet.select_motions import (
     _promise,
     select_motions,
 )
-from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
 STILL = lambda t: 0.0 * t + 0.002 * np.sin(1.1 * t)  # noqa: E731
