@@ -8,7 +8,8 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import plantar
-from plantar.feet import identify, select_motions, validate
+from plantar.feet import identify, validate
+from plantar.motions import select_motions
 from plantar.results.feet import FeetResult
 
 

@@ -11,7 +11,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "whatever moves is a jump",
-        "if most and size > WORTH", "if size > WORTH",
+        "return left if large and left < (1 - share) * before else None", "return left if large else None",
         ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(

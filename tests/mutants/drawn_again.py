@@ -105,7 +105,7 @@ VERDICTS = (
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "any jump is worth a warning",
-        "if most and size > WORTH * float(np.std(block.response)) else None", "if most else None",
+        "> WORTH * float(np.std(block.response))", "> 0.0",
     ),
     Mutant(
         "feet/assess/play.py", "play is told as its half",

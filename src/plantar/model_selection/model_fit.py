@@ -22,13 +22,17 @@ from plantar.model_selection.variable_projection import (
     ITERATIONS,
     LANDING_GAIN,
     LANDING_ITERATIONS,
+    NARROWEST_SCAN,
     NARROWING,
+    SETTLED,
     WIDEST_SCAN,
     Point,
     Problem,
-    at_rest,
     best_candidate,
     landed,
+    scan,
+    scan_shape,
+    step,
 )
 from plantar.models import BESIDE, BushModel
 
@@ -149,12 +153,35 @@ def refine(
     """
     if not refined or not (len(start.shape) or problem.model.remembers):
         return _finished(problem, start, limits, refined)
+    searches = [(ITERATIONS, WIDEST_SCAN * (NARROWING if rested else 1.0))]
     if problem.lands and not rested:
-        found = at_rest(problem, start, limits, LANDING_ITERATIONS)
-        landing = at_rest(problem, landed(problem, found), limits, LANDING_ITERATIONS)
-        start = found if landing.squares > (1 - LANDING_GAIN) * found.squares else landing
-    width = WIDEST_SCAN * (NARROWING if rested else 1.0)
-    return _finished(problem, at_rest(problem, start, limits, ITERATIONS, width), limits, refined)
+        searches = [*2 * [(LANDING_ITERATIONS, WIDEST_SCAN)], *searches]
+    remembers, rests = problem.model.remembers, list[Point]()
+    for iterations, width in searches:
+        point = _onward(problem, rests) if rests else start
+        for _ in range(iterations):
+            moved = step(problem, point, limits)
+            if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
+                point = moved
+                continue
+            rest = moved or point
+            scanned = scan(problem, rest, width) if remembers else None
+            if remembers and scanned is None:
+                scanned = scan_shape(problem, rest, limits, width)
+            width *= NARROWING
+            point = scanned or rest
+            if scanned is None and (not remembers or width < NARROWEST_SCAN):
+                break
+        rests.append(point)
+    return _finished(problem, rests[-1], limits, refined)
+
+
+def _onward(problem: Problem, rests: Sequence[Point]) -> Point:
+    """Where the next search starts: at what the air leaves of the first one's rest, then at the better of both."""
+    if len(rests) == 1:
+        return landed(problem, rests[0])
+    first, landing = rests
+    return first if landing.squares > (1 - LANDING_GAIN) * first.squares else landing
 
 
 def _finished(problem: Problem, point: Point, limits: Array, refined: bool) -> ModelFit:

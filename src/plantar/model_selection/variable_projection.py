@@ -162,27 +162,6 @@ def landed(problem: Problem, point: Point) -> Point:
     return problem.at(point.shape, np.concatenate(states))
 
 
-def at_rest(
-    problem: Problem, point: Point, limits: Array, iterations: int, width: float = WIDEST_SCAN
-) -> Point:
-    """Where steps and scans from a point come to rest. width: of the first scan, a share of the widest one."""
-    remembers = problem.model.remembers
-    for _ in range(iterations):
-        moved = step(problem, point, limits)
-        if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
-            point = moved
-            continue
-        rest = moved or point
-        scanned = scan(problem, rest, width) if remembers else None
-        if remembers and scanned is None:
-            scanned = scan_shape(problem, rest, limits, width)
-        width *= NARROWING
-        point = scanned or rest
-        if scanned is None and (not remembers or width < NARROWEST_SCAN):
-            break
-    return point
-
-
 def step(problem: Problem, point: Point, limits: Array) -> Point | None:
     """The next point of the refinement, or None where none is better."""
     linear = problem.linearised(point)
