@@ -183,6 +183,15 @@ def test_frames_that_a_bus_loses_are_told_of_their_sensor(
         assert sensor in found[0].text
         assert f"up to {10 * length} ms at a time, {100 * length / every:.0f} % of the log" in found[0].text
         assert not found[0].fatal
+        assert found[0].severity == "warning"
+
+
+def test_few_lost_frames_doubt_no_damping(robot: RobotModel) -> None:
+    """A hundredth is lost, three frames at a time: readings are old by 0.24 ms in the mean."""
+    log = losing(noisy(record(sway()), 1), "wrench.left.", 3, 250)
+    found = [finding for finding in check_channels(robot, log) if finding.code == "lost_frames"]
+    assert [finding.severity for finding in found] == ["info"]
+    assert "damping" not in found[0].text
 
 
 def test_zeros_that_a_driver_puts_in_are_no_repeated_frames(robot: RobotModel) -> None:

@@ -17,7 +17,7 @@ from plantar.estimation.blocks import Block
 from plantar.estimation.linear import information_inverse
 from plantar.estimation.normal_equations import solved
 from plantar.estimation.stance_problem import StanceProblem, design
-from plantar.signals.filters import gain, low_pass
+from plantar.signals.filters import differentiate, gain, low_pass
 from plantar.signals.medians import median
 from plantar.signals.segments import complete
 
@@ -33,7 +33,8 @@ def noise_after_filter(angles: Array, rates: Array, response: Array, period: flo
     `response` (N, m): other sensors' unfiltered signals; what moves with them or with their rates is no noise. The
     lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Rates that
     were differentiated from angles carry these' noise, which grows with frequency: it is not carried down to the
-    filter's band as if it were white. Zero where the samples are too slow to show any frequency without motion.
+    filter's band as if it were white. How much of the angles' noise that is, both show together. Zero where the samples
+    are too slow to show any frequency without motion.
     """
     nothing = np.zeros((2, angles.shape[1]))
     if ABOVE * cutoff > 0.8 * 0.5 / period:
@@ -44,15 +45,26 @@ def noise_after_filter(angles: Array, rates: Array, response: Array, period: flo
     if whole.sum() < FEWEST:
         return nothing
     white, turned = _mean_squares(period, cutoff)
+    parts = [_unexplained(part, whole, nothing.size) for part in (both - smooth, smooth - smoother)]
     wide, narrow = (
-        (NORMAL * median(np.abs(_unexplained(part, whole, nothing.size).T))).reshape(nothing.shape) ** 2
-        / share
-        for part, share in zip((both - smooth, smooth - smoother), white[1:], strict=True)
+        _mean_square(part).reshape(nothing.shape) / share
+        for part, share in zip(parts, white[1:], strict=True)
     )
+    # Encoders' noise is in both, a gyroscope's and an attitude's in one of them alone.
+    angle, rate = np.hsplit(parts[1], 2)
+    turn = differentiate(angle, period)
+    square = np.sum(turn**2, axis=0)
+    common = np.clip(np.sum(turn * rate, axis=0) / np.where(square > 0, square, np.inf), 0.0, 1.0)
+    own = _mean_square(rate - common * turn) - common * (1 - common) * narrow[0] * turned[1]
     found = np.minimum(wide, narrow)
-    beside = np.minimum(wide[1], np.maximum(narrow[1] - narrow[0] * turned[1] / white[2], 0.0))
-    rate = np.minimum(found[1] * white[0], beside * white[0] + found[0] * turned[0])
-    return np.asarray([found[0] * white[0], rate])
+    beside = np.minimum(wide[1], np.maximum(own, 0.0) / white[2])
+    of_rates = np.minimum(found[1] * white[0], beside * white[0] + common * found[0] * turned[0])
+    return np.asarray([found[0] * white[0], of_rates])
+
+
+def _mean_square(values: Array) -> Array:
+    """Of normal noise (n, k), whatever spikes stand in it, (k,)."""
+    return np.asarray((NORMAL * median(np.abs(values.T))) ** 2)
 
 
 @lru_cache(maxsize=16)
@@ -107,7 +119,7 @@ def slow_attenuation(blocks: Sequence[Block], slope: float) -> Array:
         _beside_parabolas(block, own, solution.values)
         for block, own in zip(blocks, solution.own, strict=True)
     )
-    return np.asarray(solution.inverse[:size, 0] * max(along, 0.0) / slope)
+    return np.asarray(solution.inverse[:size, 0] * (along / slope if along > 0 else 0.0))
 
 
 def _beside_parabolas(block: Block, own: Array, values: Array) -> float:

@@ -22,6 +22,8 @@ BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
 # Repeated in a row: fewer a sensor does that is a little slower than the log. Share of the log that is worth a word.
 BURST, LOST = 3, 0.01
+# s by which what is read is old in the mean: of K/C = 25 1/s damping is then off by a hundredth.
+OLD = 4e-4
 JUMPS = 5.0  # usual steps, of most channels behind a standstill: motions begin slowly, a logger that froze missed many
 
 
@@ -206,9 +208,12 @@ def _lost_frames(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
     lost = sum(run.stop - run.start for run in bursts)
     longest = max((run.stop - run.start for run in bursts), default=0)
     if again < 0.5 and longest >= BURST and lost > LOST * len(log):
+        ages = [(run.stop - run.start) * (run.stop - run.start + 1) / 2 for run in bursts]
+        old = log.period * float(np.sum(ages)) / len(log)
+        spoilt = "Delays and damping are not sure " if old > OLD else ""
         text = (
             f"{named(columns, sensor, len(columns))}: repeat their last values again and again, up to "
             f"{1e3 * longest * log.period:.0f} ms at a time, {100 * lost / len(log):.0f} % of the log; does a bus lose "
-            "frames? Delays and damping are less sure (valid: leave such cells empty)"
+            f"frames? {spoilt}(valid: leave such cells empty)"
         )
-        yield Finding(LOST_FRAMES, text)
+        yield Finding(LOST_FRAMES, text, severity="warning" if spoilt else "info")

@@ -80,7 +80,7 @@ def test_the_joint_is_named_and_neither_number_is_usable(
 
 
 @pytest.mark.parametrize(("play", "told"), [(0.0, False), (0.002, True)])
-def test_play_in_an_encoders_drive_is_told_with_its_half(
+def test_play_in_an_encoders_drive_is_told_with_its_size(
     robot: RobotModel, walks: list[MotionLog], play: float, told: bool
 ) -> None:
     found = identify_feet(robot, [with_play(log, "left_ankle_roll", play) for log in walks], settings=LINEAR)
@@ -90,7 +90,7 @@ def test_play_in_an_encoders_drive_is_told_with_its_half(
         (text,) = texts
         named = text.partition("'left_ankle_roll' ")[2]
         assert "mrad behind wherever it turns round" in named
-        assert float(named.split()[0]) == pytest.approx(1e3 * play / 2, rel=0.25)
+        assert float(named.split()[0]) == pytest.approx(1e3 * play, rel=0.25)
 
 
 def test_a_leg_all_of_whose_joints_are_late_is_told_as_one(robot: RobotModel, walks: list[MotionLog]) -> None:

@@ -37,12 +37,15 @@ def half_widths(found: Design, axis: str, name: str) -> dict[float, float | None
 
 
 def error95(one: Rehearsal, feet: Iterable[str], axis: str, name: str, truth: float) -> float | None:
-    """What 95 % of plays are off by at most [% of the value]; None where nothing is identified.
+    """What 95 % of plays are off by at most [% of the value], beside the sensors' gains; None where a draw does not
+    identify it.
 
     Of `feet` together, which are mirrored: all show the same. `truth`: the value at the stiffness told.
     """
-    found = [error for foot in feet for error in errors(one, foot, axis, name, truth)]
-    return NORMAL95 * float(np.sqrt(np.mean(np.square(found)))) if found else None
+    found = [errors(one, foot, axis, name, truth) for foot in feet]
+    if any(len(each) < len(one.results) for each in found) or not one.results:
+        return None
+    return NORMAL95 * float(np.sqrt(np.mean(np.square(found))))
 
 
 def errors(one: Rehearsal, foot: str, axis: str, name: str, truth: float) -> list[float]:

@@ -79,6 +79,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "|---|---|---|---|---|",
             *rows,
             "",
+            "What plays are off by is beside the sensors' gains, which no motion shows.",
+            "",
             *_common(content),
             "",
             *(f"- {note}." for note in content["notes"]),

@@ -53,7 +53,7 @@ REMEDY = {
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
     "delay", "encoders' delay", "moment arm", "hardening", "softening", "yaw torque zero", ZEROS_OF_STANCES,
-    "force gain", "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings",
+    "force gain", "torque gain", "imu turn", "low-pass", "joint compliance", "between recordings", "angle errors",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9  # of the variance

@@ -53,7 +53,7 @@ class Misread(NamedTuple):
         if self.kind == "late":
             return f"'{self.joint}' {1e3 * abs(self.size):.2g} ms {'late' if self.size > 0 else 'early'}"
         if self.kind == "play":
-            return f"'{self.joint}' {1e3 * self.size:.2g} mrad behind wherever it turns round"
+            return f"'{self.joint}' {2e3 * self.size:.2g} mrad behind wherever it turns round"
         return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
 
 
