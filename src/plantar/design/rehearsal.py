@@ -115,7 +115,7 @@ def bush_of(softness: Softness) -> Bush:
 
 
 def _recorded(factor: float, robot: RobotModel, rollout: Rollout, world: Physics, draw: int) -> TwinRecording:
-    return record(rollout, robot, world, preset_named(DEFAULT), DRAWS * round(SEEDS * factor) + draw)
+    return record(rollout, robot, world, preset_named(DEFAULT), round(SEEDS * factor) + draw)
 
 
 def _measured(factor: float, robot: RobotModel, rollout: Rollout, world: Physics) -> Rehearsal:
