@@ -63,9 +63,8 @@ def mjcf_text(robot: RobotModel, bushes: Feet | None, scene: Scene, look: Descri
         "integrator": "implicitfast",
     }
     option = SubElement(root, "option", options | {"cone": "elliptic", "impratio": "10"})
-    SubElement(
-        option, "flag", island="disable"
-    )  # a robot is one: looking for more takes a tenth of each step
+    # A robot is one island: looking for more takes a tenth of each step.
+    SubElement(option, "flag", island="disable")
     SubElement(SubElement(root, "visual"), "global", offwidth="1280", offheight="960")
     world = SubElement(root, "worldbody")
     _add_world(world, scene)
