@@ -16,7 +16,7 @@ from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_FITTED_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
-# Likewise, of those that a fit takes: the filter leaves less than a two hundredth of what is at their Nyquist frequency.
+# Likewise, of those that a fit takes: at their Nyquist frequency the filter leaves less than a two hundredth.
 ROWS_PER_CYCLE = 4
 THIN_BAND = 4.0  # cutoffs, that survive thinning
 # Likewise, of the path that a memory follows through short stances: of four, slip angles lack half a per cent.
