@@ -93,6 +93,39 @@ def test_play_in_an_encoders_drive_is_told_with_its_size(
         assert float(named.split()[0]) == pytest.approx(1e3 * play, rel=0.25)
 
 
+def standing(noise: bool = True) -> list[MotionLog]:
+    logs = [record(sway(f"sway_{seed}", seed, duration=30.0, torso=TRUNK)) for seed in (1, 2)]
+    return [noisy(log, seed) for seed, log in enumerate(logs)] if noise else logs
+
+
+@pytest.mark.parametrize("play", [0.001, 0.002])
+def test_play_of_a_standing_foots_joint_is_told_with_its_size(robot: RobotModel, play: float) -> None:
+    (text,) = said(
+        identify_feet(robot, [with_play(log, "left_ankle_roll", play) for log in standing()], settings=LINEAR)
+    )
+    assert text.startswith("left roll: ")
+    assert float(text.partition("'left_ankle_roll' ")[2].split()[0]) == pytest.approx(1e3 * play, rel=0.3)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.02])
+def test_a_standing_foots_joint_that_is_late_has_no_play(robot: RobotModel, late: float) -> None:
+    """The torque goes with the joint's rate itself, not with its sign."""
+    found = identify_feet(
+        robot, [misread(log, "left_ankle_roll", late=late) for log in standing()], settings=LINEAR
+    )
+    texts = said(found)
+    assert ["play" in text.partition("(valid")[0] or "behind" in text for text in texts] == [False] * bool(late)
+    assert all("'left_ankle_roll' 19 ms late" in text for text in texts)
+
+
+@pytest.mark.parametrize(("play", "told"), [(1e-6, False), (2e-3, True)])
+def test_play_that_moves_no_number_is_not_said_even_of_exact_logs(
+    robot: RobotModel, play: float, told: bool
+) -> None:
+    exact = [with_play(log, "left_ankle_roll", play) for log in standing(noise=False)]
+    assert bool(said(identify_feet(robot, exact, settings=LINEAR))) == told
+
+
 def test_a_leg_all_of_whose_joints_are_late_is_told_as_one(robot: RobotModel, walks: list[MotionLog]) -> None:
     leg = [name for name in robot.joint_names if name.startswith("left_")]
     late = walks

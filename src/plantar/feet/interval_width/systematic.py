@@ -177,12 +177,15 @@ def _zeros_of_stances(
 
 def _softening(fit: AxisFit) -> list[Cause]:
     """What a spring that loses slope as it bends may owe to its force sensor: rubber hardens, and an amplifier that
-    bends is steepest about its zero, where the stiffness is told. At most as much as its mean slope is less."""
+    bends is steepest about its zero, where the stiffness is told. Anything from nothing to all of the bend: then the
+    spring has its mean slope everywhere."""
     terms = fit.model.terms
-    if has_memory(fit.model) or "hardening" not in terms or fit.values[terms.index("hardening")] >= 0:
+    if has_memory(fit.model) or "hardening" not in terms:
         return []
-    effect = np.zeros(len(fit.values))
-    effect[0] = fit.values[0] - fit.equivalent[0]
+    effect, bends = np.zeros(len(fit.values)), terms.index("hardening")
+    if fit.values[bends] >= 0:
+        return []
+    effect[[0, bends]] = fit.values[0] - fit.equivalent[0], fit.values[bends]
     return [Cause("softening", effect, UNIFORM)]
 
 

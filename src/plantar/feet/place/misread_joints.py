@@ -3,7 +3,7 @@ behind by the play of their encoder's drive.
 
 While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
 too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
-the torque tells the two apart. Where a foot stands it is the other way round: such a joint hardly moves the numbers.
+the torque tells the two apart. Where a foot stands such a joint moves the stiffness less, and the damping as much.
 """
 
 from __future__ import annotations
@@ -58,16 +58,14 @@ class Misread(NamedTuple):
 
 
 def misread_joint_notes(
-    robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block]
+    robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
 ) -> list[Note]:
-    """A warning where the torque of a foot that steps goes far better with a joint that is read otherwise, and that
-    moves stiffness or damping out of the interval of `wide`.
+    """A warning where the torque goes far better with a joint that is read otherwise, and that moves stiffness or
+    damping out of the interval of `wide`.
 
-    tangents: the recordings' `tangent_blocks`.
+    recordings: with all of their logs; tangents: of the same, as they are fitted.
     """
-    if tangents[0].stances is None:
-        return []
-    alone = fit_blocks(tangents)
+    alone = fit_blocks(tangents, shared_offset=shared)
     each = [_columns(robot, one, wide) for one in recordings_of(tangents, recordings)]
     told = [np.column_stack([*columns.values()]) for columns in each]
     needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in each[0]])
@@ -76,7 +74,7 @@ def misread_joint_notes(
         return []
     close = {which: column for column, which in enumerate(each[0]) if left[column] <= ALIKE}
     fits = (
-        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
+        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values, shared)
         for which, column in close.items()
     )
     found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
@@ -93,9 +91,11 @@ def misread_joint_notes(
     return [Note(MISREAD, "warning", text)]
 
 
-def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual: Array) -> Misread | None:
+def _misread(
+    joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual: Array, shared: bool
+) -> Misread | None:
     """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
-    fit = fit_blocks(wider)
+    fit = fit_blocks(wider, shared_offset=shared)
     size, std = float(fit.values[-1]), float(fit.std[-1])
     most = {"gain": GAIN, "late": LATE, "play": PLAY}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
