@@ -79,6 +79,16 @@ DATA_FAULTS = (
         ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(
+        "estimation/delays/sensor_delays.py", "cells of a log miss each by themselves",
+        "middle += total.T @ total", "middle += sum(scores.T @ scores for scores in own)",
+        ("estimation/delays/test_sensor_delays.py",),
+    ),
+    Mutant(
+        "sensors/delays/refined_delays.py", "delays that come and go are as sure as others",
+        "np.diag(own.covariance + own.through_time(balances))", "np.diag(own.covariance)",
+        ("sensors/delays/test_refined_delays.py",),
+    ),
+    Mutant(
         "feet/put_right/encoders_of_fits.py", "a law that misses a little is believed",
         "return MISSED_BY_LAW *", "return 0.0 *", ("feet/put_right/test_encoders_of_fits.py",),
     ),

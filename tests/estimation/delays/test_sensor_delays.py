@@ -27,15 +27,15 @@ PERIOD, SAMPLES = 0.005, 8000
 INNER = slice(100, -100)
 
 
-def late(values: Array, delay: float) -> Array:
-    """Values (n, 6) as a sensor reports them that is late by `delay` [s]."""
+def late(values: Array, delay: float | Array) -> Array:
+    """Values (n, 6) as a sensor reports them that is late by `delay` [s], of each sample if it is (n,)."""
     time: Array = PERIOD * np.arange(len(values), dtype=np.float64)
     return np.nan_to_num(
         np.column_stack([interpolate(time - delay, time, column, 1.0) for column in values.T])
     )
 
 
-def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
+def residual(delays: Sequence[float | Array], seed: int) -> NewtonEulerResidual:
     """Two feet that also push against each other, below 1.5 Hz; half of the motion shows in the encoders alone."""
     *each, encoders = delays
     random = np.random.default_rng(seed)
@@ -82,6 +82,21 @@ def test_bands_that_hold_fewer_values_than_delays_tell_none() -> None:
 
     assert estimate_delays([part(2.5)]) is None
     assert estimate_delays([part(30.0)]) is not None
+
+
+@pytest.mark.parametrize(("amount", "least", "most"), [(0.008, 3e-4, 2e-3), (0.0, 0.0, 1e-4)])
+def test_a_delay_that_comes_and_goes_is_as_unsure_as_its_mean(amount: float, least: float, most: float) -> None:
+    """It moves all axes and bands together, which do not disagree then: only how it changes in time tells."""
+    off, wide = list[float](), list[float]()
+    for seed in range(6):
+        busy = low_pass(np.random.default_rng(seed + 50).standard_normal(SAMPLES), PERIOD, 0.3) > 0
+        balance = residual([amount * busy, 0.002, 0.0], seed).balance
+        found = estimate_delays([balance], np.eye(3)[2:])
+        assert found is not None
+        off.append(found.values[0] - amount * busy[INNER].mean())
+        wide.append(np.sqrt(found.through_time([balance])[0, 0]))
+    assert least <= np.sqrt(np.mean(np.square(wide))) <= most
+    assert np.sqrt(np.mean(np.square(off))) < max(1.5 * np.sqrt(np.mean(np.square(wide))), 5e-4)
 
 
 def test_what_is_held_is_not_estimated() -> None:
