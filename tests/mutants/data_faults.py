@@ -75,7 +75,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/interval_width/systematic.py", "the bend is the rubber's whatever the slope is",
-        "fit.values[0] - fit.equivalent[0], fit.values[bends]", "fit.values[0] - fit.equivalent[0], 0.0",
+        "less * fit.values[1], fit.values[bends]", "less * fit.values[1], 0.0",
         ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(
@@ -86,7 +86,7 @@ DATA_FAULTS = (
     Mutant(
         "sensors/delays/refined_delays.py", "delays that come and go are as sure as others",
         "np.diag(own.covariance + own.through_time(balances))", "np.diag(own.covariance)",
-        ("sensors/delays/test_refined_delays.py",),
+        ("estimation/delays/test_sensor_delays.py",),
     ),
     Mutant(
         "feet/put_right/encoders_of_fits.py", "a law that misses a little is believed",

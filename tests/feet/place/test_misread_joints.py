@@ -114,7 +114,9 @@ def test_a_standing_foots_joint_that_is_late_has_no_play(robot: RobotModel, late
         robot, [misread(log, "left_ankle_roll", late=late) for log in standing()], settings=LINEAR
     )
     texts = said(found)
-    assert ["play" in text.partition("(valid")[0] or "behind" in text for text in texts] == [False] * bool(late)
+    assert ["play" in text.partition("(valid")[0] or "behind" in text for text in texts] == [False] * bool(
+        late
+    )
     assert all("'left_ankle_roll' 19 ms late" in text for text in texts)
 
 

@@ -76,8 +76,8 @@ class _Cell:
 
 @dataclass(frozen=True)
 class Delays:
-    """`values` (delays,) [s], > 0: late; their `covariance`; `cells` took part, of `weights`, whose weighted squares are
-    the inverse of `inverse`."""
+    """`values` (delays,) [s], > 0: late; their `covariance`; `cells` took part, by their `weights`: the
+    delays' scores, so weighted, times `inverse` are what moves them."""
 
     values: Array
     covariance: Array
@@ -90,7 +90,7 @@ class Delays:
         log together, which do not disagree then."""
         middle, weights = np.zeros_like(self.inverse), iter(self.weights)
         for balance in balances:
-            if own := [weight * cell.scores(self.values) for cell, weight in zip(balance.cells, weights)]:
+            if own := [next(weights) * cell.scores(self.values) for cell in balance.cells]:
                 few = min(len(scores) for scores in own)
                 total = np.sum([np.sqrt(len(scores) / few) * scores[:few] for scores in own], axis=0)
                 middle += total.T @ total
