@@ -6,14 +6,16 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
 from feet_trials import LINEAR, noisy, stepping
 from plantar.feet.identify import identify_feet
 from plantar.feet.place.misread_joints import MISREAD
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
 
 TRUNK = (
     sines((0.01, 0.35, 0.3)),
@@ -57,10 +59,10 @@ def said(found: FeetResult) -> list[str]:
 @pytest.mark.parametrize(
     ("joint", "axis", "gain", "late", "words"),
     [
-        ("left_ankle_pitch", "pitch", 1.05, 0.0, "'left_ankle_pitch' 1.05 times. "),
-        ("left_ankle_roll", "roll", 0.95, 0.0, "'left_ankle_roll' 0.95 times. "),
-        ("left_ankle_roll", "roll", 1.0, 0.008, " ms late. "),
-        ("left_ankle_roll", "roll", 1.0, -0.008, " ms early. "),
+        ("left_ankle_pitch", "pitch", 1.05, 0.0, "'left_ankle_pitch' 1.05 times"),
+        ("left_ankle_roll", "roll", 0.95, 0.0, "'left_ankle_roll' 0.95 times"),
+        ("left_ankle_roll", "roll", 1.0, 0.008, " ms late"),
+        ("left_ankle_roll", "roll", 1.0, -0.008, " ms early"),
     ],
 )
 def test_the_joint_is_named_and_neither_number_is_usable(
@@ -118,6 +120,28 @@ def test_a_standing_foots_joint_that_is_late_has_no_play(robot: RobotModel, late
         late
     )
     assert all("'left_ankle_roll' 19 ms late" in text for text in texts)
+
+
+def on_soft_mount(log: MotionLog, tilt: float) -> MotionLog:
+    """The log of an IMU whose mount lets it tilt by so much [rad] for each m/s², its mass above."""
+    acceleration = log.linear_acceleration("chest")
+    turn = tilt * low_pass(np.cross([0.0, 0.0, 1.0], acceleration), log.period, 4.0)
+    orientation = Rotation.from_quat(log.orientation("chest"), scalar_first=True) * Rotation.from_rotvec(turn)
+    rates = log.angular_velocity("chest") + np.gradient(turn, log.period, axis=0)
+    columns = (*orientation.as_quat(scalar_first=True).T, *rates.T)
+    return log.with_columns(
+        dict(zip(imu_columns("chest", "orientation", "angular_velocity"), columns, strict=True))
+    )
+
+
+@pytest.mark.parametrize("tilt", [0.002, -0.004])
+def test_an_imu_on_a_soft_mount_is_told_with_its_tilt(robot: RobotModel, tilt: float) -> None:
+    logs = [on_soft_mount(log, tilt) for log in standing()]
+    texts = said(identify_feet(robot, logs, settings=LINEAR))
+    assert texts
+    for text in texts:
+        size = text.partition("the IMU tilts by ")[2].split()[0]
+        assert float(size) == pytest.approx(1e3 * abs(tilt), rel=0.2)
 
 
 @pytest.mark.parametrize(("play", "told"), [(1e-6, False), (2e-3, True)])

@@ -1,9 +1,10 @@
 """Joints between IMU and foot that are not read as the robot file says: a few per cent too much, late by themselves, or
-behind by the play of their encoder's drive.
+behind by the play of their encoder's drive; or the IMU itself, whose soft mount lets it tilt as it is accelerated.
 
 While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
 too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
-the torque tells the two apart. Where a foot stands such a joint moves the stiffness less, and the damping as much.
+the torque tells the two apart. Where a foot stands such a joint moves the stiffness less, and the damping as much;
+an IMU that tilts by 2 mrad for each m/s² makes K 4 % too large and C up to 27 %.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ SURE = 5.0  # deviations of what is misread
 BETTER, BETTER_TURNING = 1.5, 1.3
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
-GAIN, LATE, PLAY = 0.2, 0.03, 0.02  # share; s; rad
+GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
 # Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
 # sign of its rate gives back half of what is missing.
 PART = 0.5
@@ -52,6 +53,8 @@ class Misread(NamedTuple):
     def __str__(self) -> str:
         if self.kind == "late":
             return f"'{self.joint}' {1e3 * abs(self.size):.2g} ms {'late' if self.size > 0 else 'early'}"
+        if self.kind == "soft":
+            return f"{self.joint} tilts by {1e3 * abs(self.size):.2g} mrad for each m/s², as on a soft mount"
         if self.kind == "play":
             return f"'{self.joint}' {2e3 * self.size:.2g} mrad behind wherever it turns round"
         return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
@@ -60,8 +63,8 @@ class Misread(NamedTuple):
 def misread_joint_notes(
     robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
 ) -> list[Note]:
-    """A warning where the torque goes far better with a joint that is read otherwise, and that moves stiffness or
-    damping out of the interval of `wide`.
+    """A warning where the torque goes far better with a joint, or an IMU, that is read otherwise, and that moves
+    stiffness or damping out of the interval of `wide`.
 
     recordings: with all of their logs; tangents: of the same, as they are fitted.
     """
@@ -84,9 +87,9 @@ def misread_joint_notes(
         return []
     alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
-        f"{wide.foot} {wide.axis}: the torque follows the angle far better with a joint that was read otherwise: "
+        f"{wide.foot} {wide.axis}: the torque follows the angle far better with what was read otherwise: "
         f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders without play, whose angles are the "
-        "links', all read at one moment)"
+        "links', all read at one moment; a stiff mount of the IMU)"
     )
     return [Note(MISREAD, "warning", text)]
 
@@ -97,7 +100,7 @@ def _misread(
     """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
     fit = fit_blocks(wider, shared_offset=shared)
     size, std = float(fit.values[-1]), float(fit.std[-1])
-    most = {"gain": GAIN, "late": LATE, "play": PLAY}[kind]
+    most = {"gain": GAIN, "late": LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
     if not (SURE * std < away < most and fit.condition_number < SINGULAR):
         return None
@@ -118,7 +121,30 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
         columns[joint, "play"] = own * fit.values[0] * turns
     # One bus often reads all joints of a leg.
     late = [column for (_, kind), column in columns.items() if kind == "late"]
-    return columns | {(f"all joints to the {fit.foot} foot", "late"): np.sum(late, axis=0)}
+    columns[f"all joints to the {fit.foot} foot", "late"] = np.sum(late, axis=0)
+    if (tilts := _tilts(robot, recording, fit.foot)) is not None:
+        columns["the IMU", "soft"] = tilts[:, ROTATIONAL_AXES.index(fit.axis)] @ fit.values[:2]
+    return columns
+
+
+def _tilts(robot: RobotModel, recording: Recording, foot: str) -> Array | None:
+    """The bush's angles and their rates at the rows of a fit that an IMU sees which its mount lets tilt, its mass above
+    or below, by 1 rad for each m/s² of acceleration, (n, 2, 2); None where it is not recorded."""
+    log, imu = recording.log, robot.required_imu
+    key = (MISREAD, foot, imu.name)  # both axes ask
+    if not log.has_imu(imu.name, "linear_acceleration") or not recording.imu_turns:
+        return None
+    if key not in recording.kept:
+        acceleration = log.linear_acceleration(imu.name)
+        mean = np.nanmean(acceleration, axis=0)
+        up = mean / np.linalg.norm(mean)
+        stances = recording.stances[foot]
+        turned = within_stances(np.cross(up, acceleration), recording.period, recording.cutoff, stances)
+        angles = np.einsum("nrk,nk->nr", recording.imu_turns[foot], turned)
+        rows = recording.rows(foot)
+        both = np.stack([angles, differentiate(angles, recording.period)], axis=2)
+        recording.kept[key] = np.nan_to_num(both[rows])
+    return cast(Array, recording.kept[key])
 
 
 def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:
