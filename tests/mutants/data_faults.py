@@ -98,6 +98,10 @@ DATA_FAULTS = (
         ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
+        "feet/place/misread_joints.py", "a soft mount tilts about what pulls at it",
+        "np.cross(up, acceleration)", "acceleration", ("feet/place/test_misread_joints.py",),
+    ),
+    Mutant(
         "feet/place/misread_joints.py", "a joint that is late is early",
         "'late' if self.size > 0", "'late' if self.size < 0",
         ("feet/place/test_misread_joints.py",),
