@@ -99,7 +99,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/place/misread_joints.py", "a soft mount tilts about what pulls at it",
-        "np.cross(up, acceleration)", "acceleration", ("feet/place/test_misread_joints.py",),
+        "cross(up, acceleration)", "acceleration", ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
         "feet/place/misread_joints.py", "a joint that is late is early",

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
-from feet_trials import LINEAR, noisy, stepping
+from feet_trials import LINEAR, codes, noisy, stepping, without
 from plantar.feet.identify import identify_feet
 from plantar.feet.place.misread_joints import MISREAD
 from plantar.logs.motion_log import MotionLog, imu_columns
@@ -142,6 +142,15 @@ def test_an_imu_on_a_soft_mount_is_told_with_its_tilt(robot: RobotModel, tilt: f
     for text in texts:
         size = text.partition("the IMU tilts by ")[2].split()[0]
         assert float(size) == pytest.approx(1e3 * abs(tilt), rel=0.2)
+
+
+def test_logs_without_an_accelerometer_tell_no_soft_mount(robot: RobotModel) -> None:
+    """Beside one that has it, too."""
+    first, second = (on_soft_mount(log, 0.002) for log in standing())
+    logs = [first, without(second, "linear_acceleration")]
+    assert "internal_error" not in codes(identify_feet(robot, logs, settings=LINEAR))
+    found = identify_feet(robot, [without(log, "linear_acceleration") for log in logs], settings=LINEAR)
+    assert not any("tilts" in text for text in said(found))
 
 
 @pytest.mark.parametrize(("play", "told"), [(1e-6, False), (2e-3, True)])

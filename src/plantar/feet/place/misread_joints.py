@@ -15,7 +15,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, Array, cross
 from plantar.estimation import Block, fit_blocks, least_left
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
@@ -41,8 +41,9 @@ SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
 class Misread(NamedTuple):
-    """A joint, its `kind` of misreading, by how much it turns more [share], is read later [s] or is behind [rad], the
-    squares that are then left, and whether another stiffness or damping follows, outside of its interval."""
+    """A joint, its `kind` of misreading, by how much it turns more [share], is read later [s] or is behind [rad], or the
+    IMU and its tilt [rad per m/s²]; the squares that are then left, and whether another stiffness or damping follows,
+    outside of its interval."""
 
     joint: str
     kind: str
@@ -110,7 +111,8 @@ def _misread(
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
     """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
-    each second by which it is read later, for each radian by which it stays behind its own rate."""
+    each second by which it is read later, for each radian by which it stays behind its own rate; and for each radian by
+    which the IMU tilts with each m/s²."""
     columns = dict[tuple[str, str], Array]()
     for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
@@ -122,28 +124,25 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
     # One bus often reads all joints of a leg.
     late = [column for (_, kind), column in columns.items() if kind == "late"]
     columns[f"all joints to the {fit.foot} foot", "late"] = np.sum(late, axis=0)
-    if (tilts := _tilts(robot, recording, fit.foot)) is not None:
-        columns["the IMU", "soft"] = tilts[:, ROTATIONAL_AXES.index(fit.axis)] @ fit.values[:2]
-    return columns
+    tilts = _tilts(robot, recording, fit.foot)[:, ROTATIONAL_AXES.index(fit.axis)]
+    return columns | {("the IMU", "soft"): tilts @ fit.values[:2]}
 
 
-def _tilts(robot: RobotModel, recording: Recording, foot: str) -> Array | None:
+def _tilts(robot: RobotModel, recording: Recording, foot: str) -> Array:
     """The bush's angles and their rates at the rows of a fit that an IMU sees which its mount lets tilt, its mass above
-    or below, by 1 rad for each m/s² of acceleration, (n, 2, 2); None where it is not recorded."""
-    log, imu = recording.log, robot.required_imu
-    key = (MISREAD, foot, imu.name)  # both axes ask
-    if not log.has_imu(imu.name, "linear_acceleration") or not recording.imu_turns:
-        return None
+    or below, by 1 rad for each m/s² of acceleration, (n, 2, 2); zero where nothing is known."""
+    log, name, period = recording.log, robot.required_imu.name, recording.period
+    key = (MISREAD, foot, name)  # both axes ask
     if key not in recording.kept:
-        acceleration = log.linear_acceleration(imu.name)
-        mean = np.nanmean(acceleration, axis=0)
-        up = mean / np.linalg.norm(mean)
-        stances = recording.stances[foot]
-        turned = within_stances(np.cross(up, acceleration), recording.period, recording.cutoff, stances)
-        angles = np.einsum("nrk,nk->nr", recording.imu_turns[foot], turned)
-        rows = recording.rows(foot)
-        both = np.stack([angles, differentiate(angles, recording.period)], axis=2)
-        recording.kept[key] = np.nan_to_num(both[rows])
+        acceleration = np.zeros((len(log), 3))
+        if log.has_imu(name, "linear_acceleration"):
+            acceleration = np.nan_to_num(log.linear_acceleration(name))
+        mean = acceleration.mean(axis=0)
+        up = mean / max(float(np.linalg.norm(mean)), np.finfo(float).tiny)
+        turn = within_stances(cross(up, acceleration), period, recording.cutoff, recording.stances[foot])
+        angles = np.einsum("nrk,nk->nr", recording.imu_turns[foot], turn)
+        both = np.stack([angles, differentiate(angles, period)], axis=2)
+        recording.kept[key] = np.nan_to_num(both[recording.rows(foot)])
     return cast(Array, recording.kept[key])
 
 
