@@ -41,9 +41,9 @@ SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
 class Misread(NamedTuple):
-    """A joint, its `kind` of misreading, by how much it turns more [share], is read later [s] or is behind [rad]; or the
-    IMU and its tilt [rad per m/s²]. The squares that are then left, and whether another stiffness or damping follows,
-    outside of its interval."""
+    """A joint, its `kind` of misreading, and by how much it turns more [share], is read later [s] or is behind [rad];
+    or the IMU and its tilt [rad per m/s²]. The squares that are then left, and whether another stiffness or damping
+    follows, outside of its interval."""
 
     joint: str
     kind: str
