@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -151,6 +152,12 @@ def test_logs_without_an_accelerometer_tell_no_soft_mount(robot: RobotModel) -> 
     assert "internal_error" not in codes(identify_feet(robot, logs, settings=LINEAR))
     found = identify_feet(robot, [without(log, "linear_acceleration") for log in logs], settings=LINEAR)
     assert not any("tilts" in text for text in said(found))
+
+
+def test_no_joint_between_imu_and_bush_is_misread(robot: RobotModel) -> None:
+    """As on a bench that holds a foot alone."""
+    on_foot = replace(robot, imu=replace(robot.required_imu, placement=robot.feet["left"].bush))
+    assert "internal_error" not in codes(identify_feet(on_foot, standing(), settings=LINEAR))
 
 
 @pytest.mark.parametrize(("play", "told"), [(1e-6, False), (2e-3, True)])

@@ -122,8 +122,8 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
         turns = np.tanh(motion[:, 1] / (SOFT * fast)) if fast > 0 else np.zeros_like(own)
         columns[joint, "play"] = own * fit.values[0] * turns
     # One bus often reads all joints of a leg.
-    late = [column for (_, kind), column in columns.items() if kind == "late"]
-    columns[f"all joints to the {fit.foot} foot", "late"] = np.sum(late, axis=0)
+    if late := [column for (_, kind), column in columns.items() if kind == "late"]:
+        columns[f"all joints to the {fit.foot} foot", "late"] = np.sum(late, axis=0)
     tilts = _tilts(robot, recording, fit.foot)[:, ROTATIONAL_AXES.index(fit.axis)]
     return columns | {("the IMU", "soft"): tilts @ fit.values[:2]}
 
