@@ -226,10 +226,8 @@ void FootTracker::change_ground() noexcept {
     if (axis.suspicion().softer() + axis.suspicion().stiffer() > 0.0) axis.jump();
 }
 
-void FootTracker::discard() noexcept {
-  for (AxisRegression& axis : axes_) axis.discard();
-  for (MemoryWatch& memory : memories_) memory.discard();
-  lifted_ = false;  // nor is it known how the elements are bent
+void FootTracker::lose_elements() noexcept {
+  if (has_element(*foot_, 0) || has_element(*foot_, 1)) lifted_ = begun_elements_ = false;
 }
 
 void FootTracker::forget() noexcept {
