@@ -9,7 +9,7 @@ import pytest
 
 from biped import drawn_up, record, sway
 from plantar.contact.reasons import Reason
-from plantar.feet.prepare_log import prepare
+from plantar.feet.prepare_log import checked, prepare
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.newton_euler import with_gyroscope
@@ -114,3 +114,15 @@ def test_newtons_law_needs_sensors_that_know_the_load(robot: RobotModel) -> None
     log = record(sway("sway", duration=2.0))
     assert with_gyroscope(robot, log) is not None
     assert with_gyroscope(always_standing(robot, "right"), log) is None
+
+
+def test_of_a_long_log_what_moves_is_made_ready(robot: RobotModel) -> None:
+    log = record(sway(duration=20.0))
+    time = np.arange(0.0, 720.0, 0.05)
+    columns = {
+        name: np.interp(time % 20.0, log.time - log.time[0], values) for name, values in log.columns.items()
+    }
+    ready = checked(robot, MotionLog("long", time, columns))
+    assert "long_recording" in {note.code for note in ready.notes}
+    assert not {"gaps", "resampled"} & {note.code for note in ready.notes}
+    assert len(ready) == 600 * 20

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.logs.motion_log import MotionLog
+from plantar.signals.resampling import evenly_sampled
 from plantar.signals.thinning import (
     picked,
     thinned,
@@ -79,3 +80,25 @@ def test_columns_are_filtered_as_if_each_were_alone() -> None:
         )
     assert np.isnan(thin.column("joint.holed.position")).sum() == 99
     assert list(thin.columns) == [f"joint.{name}.position" for name in signals]
+
+
+@pytest.mark.parametrize("start", range(10))
+def test_nothing_is_filtered_across_a_long_gap(start: int) -> None:
+    time = np.arange(0.0, 60.0, 0.0005)
+    knee = (time > 20.0).astype(float)
+    rows = (time < 10.0 + 0.0005 * start) | (time > 40.0)
+    log = MotionLog("log", time[rows], {"joint.knee.position": knee[rows]})
+    there = thinned(evenly_sampled(log)).column("joint.knee.position")
+    assert np.isnan(there).any()
+    np.testing.assert_allclose(there[np.isfinite(there)] % 1, 0.0, atol=1e-9)
+
+
+def test_columns_with_the_same_holes_are_filtered_as_each_alone() -> None:
+    log = log_of(1000.0, knee=tone(1.0), hip=tone(2.0), ankle=tone(3.0), waist=tone(4.0))
+    columns = {name: values.copy() for name, values in log.columns.items()}
+    for name, hole in zip(columns, (slice(0), slice(100, 900), slice(100, 900), slice(4, 90)), strict=True):
+        columns[name][hole] = np.nan
+    together = thinned(MotionLog("log", log.time, columns))
+    for name, values in columns.items():
+        alone = thinned(MotionLog("log", log.time, {name: values})).column(name)
+        np.testing.assert_array_equal(together.column(name), alone)

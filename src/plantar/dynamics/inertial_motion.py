@@ -30,6 +30,10 @@ class InertialSignals:
     proper: Array
     period: float
 
+    def during(self, run: slice) -> InertialSignals:
+        """The signals of some consecutive samples alone."""
+        return InertialSignals(self.positions[run], self.rate[run], self.proper[run], self.period)
+
     @cached_property
     def joints(self) -> tuple[Array, Array, Array]:
         """Positions, velocities and accelerations of the joints; velocities and accelerations are differences."""

@@ -22,15 +22,12 @@ DEAD_BAND = "dead_band"
 def check_dead_bands(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """Torques of a loaded foot about its horizontal axes that are exactly 0 far more often than any other value."""
     for foot in robot.feet.values():
-        wrench = log.wrench(foot.wrench.name)
-        loaded = np.linalg.norm(wrench[:, :3], axis=1) > LOADED * robot.mass * GRAVITY
-        columns = wrench_columns(foot.wrench.name)[3:5]
-        torques = wrench[loaded, 3:5].T
-        dead = [
-            column
-            for column, values in zip(columns, torques, strict=True)
-            if _share_at_zero(values) > LEAST_SHARE
-        ]
+        names = wrench_columns(foot.wrench.name)
+        squares = np.zeros(len(log))
+        for name in names[:3]:
+            squares += log.column(name) ** 2
+        loaded = squares > (LOADED * robot.mass * GRAVITY) ** 2
+        dead = [name for name in names[3:5] if _share_at_zero(log.column(name)[loaded]) > LEAST_SHARE]
         if dead:
             text = (
                 f"{named(dead)}: exactly 0 far more often than any other value while the foot carries load: a "

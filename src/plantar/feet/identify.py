@@ -26,6 +26,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.feet.shared_hysteresis import with_shared_hysteresis
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
+from plantar.logs.stretches import LONGEST
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -71,7 +72,11 @@ def identify_feet(
     """
     robot = robot_of(robot)
     ready = prepare_all(
-        robot, logs_of(logs, robot), logs_of(validate, robot), settings_of(settings, FeetSettings), progress
+        robot,
+        logs_of(logs, robot, LONGEST),
+        logs_of(validate, robot, LONGEST),
+        settings_of(settings, FeetSettings),
+        progress,
     )
     return fit_prepared(robot, ready, progress)
 

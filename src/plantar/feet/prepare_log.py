@@ -20,6 +20,7 @@ from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
+from plantar.logs.stretches import most_moving
 from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
 from plantar.sensors.air_zero import AirZero, air_zero
@@ -47,7 +48,7 @@ WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than th
 
 
 def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | None = None) -> MotionLog:
-    """The log on an even grid, without held samples, dropouts and spikes, oddities as notes.
+    """The log on an even grid, without held samples, dropouts and spikes, oddities as notes; of a long one what moves.
 
     findings: of `check_log`, where that has been asked already.
 
@@ -55,6 +56,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `faults`).
     """
     _require(robot)
+    log = most_moving(log)
     # Its samples are put right while it is checked; where time is wrong, an even grid could take any memory.
     if len(log) > LONG and findings is None and is_even(log):
         with ThreadPoolExecutor(1) as pool:

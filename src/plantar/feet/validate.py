@@ -16,6 +16,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
+from plantar.logs.stretches import LONGEST
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, ValidationRow
@@ -76,7 +77,7 @@ def scored_feet(
     compliance = {foot: found.compliance.get(foot, 0.0) for foot in robot.feet}
     delay = _sensor_delay(found.sensor_delay)
     recordings = prepare_unseen(
-        robot, logs_of(logs, robot), FeetSettings(**known), delay, compliance, progress
+        robot, logs_of(logs, robot, LONGEST), FeetSettings(**known), delay, compliance, progress
     )
     rows: list[ValidationRow] = []
     for foot in sorted(feet):

@@ -19,6 +19,7 @@ from plantar.errors import DataError, LogError, NoRoom, RobotError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import of_robot, open_log, reads_alike
 from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
+from plantar.logs.stretches import LONGEST
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
@@ -60,17 +61,19 @@ class WaitingLogs:
         return replace(self, openers=self.openers[some])
 
 
-def logs_of(logs: LogInputs, robot: RobotModel) -> Iterable[MotionLog]:
-    """One log or several, each itself or read from its file when its turn comes. Raises LogError for anything else."""
+def logs_of(logs: LogInputs, robot: RobotModel, longest: float = np.inf) -> Iterable[MotionLog]:
+    """One log or several, each itself or read from its file when its turn comes; longest: as in `open_log`. Raises
+    LogError for anything else."""
     if isinstance(logs, MotionLog | str | os.PathLike):
         logs = (logs,)
     if isinstance(logs, WaitingLogs):
         return logs
     if isinstance(logs, Sequence):
-        return WaitingLogs([partial(_log_of, log, robot) for log in logs], _bounded(logs, usual_memory()))
+        openers = [partial(_log_of, log, robot, longest) for log in logs]
+        return WaitingLogs(openers, _bounded(logs, usual_memory()))
     if not isinstance(logs, Iterable):
         raise _no_log(logs)
-    return (_log_of(log, robot) for log in logs)
+    return (_log_of(log, robot, longest) for log in logs)
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,8 @@ def open_in_turn(
     memory: int | None = None,
     ahead: Mapping[Path, MotionLog] = MappingProxyType({}),
 ) -> WaitingLogs:
-    """Logs read when their turns come: each must fit in `memory` bytes beside those that are `kept` of the ones before.
+    """Logs read when their turns come, of long ones what moves most: each must fit in `memory` bytes beside those that
+    are `kept` of the ones before.
 
     If left out, the usual memory. ahead: those that were read before. Raises LogError as `open_log`.
     """
@@ -115,7 +119,7 @@ def open_in_turn(
     def read(path: Path) -> MotionLog:
         nonlocal left
         try:
-            log = open_log(path, robot, memory=left)
+            log = open_log(path, robot, memory=left, longest=LONGEST)
         except NoRoom as error:
             if left == whole:
                 raise
@@ -193,11 +197,11 @@ def _largest(path: Path) -> float:
     return NUMBER * path.stat().st_size if plain else np.inf
 
 
-def _log_of(log: LogInput, robot: RobotModel) -> MotionLog:
+def _log_of(log: LogInput, robot: RobotModel, longest: float) -> MotionLog:
     if isinstance(log, MotionLog):
         return log
     if isinstance(log, str | os.PathLike):
-        return open_log(log, robot)
+        return open_log(log, robot, longest=longest)
     raise _no_log(log)
 
 

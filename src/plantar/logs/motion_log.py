@@ -53,6 +53,7 @@ class MotionLog:
         columns: (N,) each, in SI units, named as in `docs/log_columns.md`, such as `joint.<joint>.position` [rad]. They
             become read-only float64; NaN marks a value that was not recorded, and stands for infinite ones.
         path, sha256: the file that it was read from. notes: what was assumed while reading.
+        left_out: spans of a longer recording (from, to) [s] whose rows are not here, since others tell more.
 
     Raises:
         LogError: lengths differ, time does not increase, or there are fewer than two samples.
@@ -71,6 +72,7 @@ class MotionLog:
     path: Path | None = None
     sha256: str | None = None
     notes: tuple[Note, ...] = ()
+    left_out: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         time = _frozen(self.time)

@@ -126,27 +126,27 @@ def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEule
         return []
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    found = [_along(robot, log, signals, wrenches, run) for run in _known_runs(robot, signals, wrenches)]
+    runs_of_log = _known_runs(robot, signals, wrenches)
+    found = [_along(robot, log, signals.during(run), wrenches[run]) for run in runs_of_log]
     return [one for one in found if one is not None]
 
 
 def _along(
-    robot: RobotModel, log: MotionLog, signals: InertialSignals, wrenches: Array, run: slice
+    robot: RobotModel, log: MotionLog, signals: InertialSignals, wrenches: Array
 ) -> NewtonEulerResidual | None:
-    """Both sides in the longest segment of a run in which nobody pushes; None where that is too short."""
-    edge = round(EDGE / log.period)
-    if run.stop - run.start < 4 * edge + 400:
+    """Both sides in the longest segment in which nobody pushes, of the signals of a run; None where it is too short."""
+    edge, count = round(EDGE / log.period), len(wrenches)
+    if count < 4 * edge + 400:
         return None
     equation = equation_of(robot.floating_model)
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    period, inner = stride * log.period, slice(edge, run.stop - run.start - edge, stride)
-    kept = slice(run.start + edge, run.stop - edge, stride)
+    period, kept = stride * log.period, slice(edge, count - edge, stride)
     motion = inertial_motion(robot, equation, signals, kept)
-    readings = low_pass(wrenches[run], log.period, CUTOFF)
-    below = below_sensors(robot, equation, motion, readings[inner], period)
+    readings = low_pass(wrenches, log.period, CUTOFF)
+    below = below_sensors(robot, equation, motion, readings[kept], period)
     parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
     # Copies: views of a long log's samples would keep all of them.
-    loads = FootLoads.of(readings[inner].copy(), differentiate(readings, log.period)[inner].copy())
+    loads = FootLoads.of(readings[kept].copy(), differentiate(readings, log.period)[kept].copy())
 
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
 
@@ -172,7 +172,7 @@ def _along(
         found.pair,
         model_errors=equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot)),
     )
-    start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
+    start, stop, _ = calm.indices(len(range(*kept.indices(count))))
     return NewtonEulerResidual(
         pair,
         found.measured,

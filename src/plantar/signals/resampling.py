@@ -14,12 +14,14 @@ from plantar.notes import Note, listing
 GAP_PERIODS = 3.5  # a step of time longer than this many periods is a gap
 BRIDGED = 0.04  # s: no motion that a fit uses is as short
 LONG_GAP = 10.0  # s: a longer gap is not spelled out sample by sample
+SHOWN = 0.02  # s of a long gap, at least, that stand on the grid: every few samples of a quick log show it
 JITTER_SHARE = 0.25  # of a period: below it, samples count as evenly spaced
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """How evenly a log is sampled: `rate` [Hz], rms `jitter` of the steps [s], gaps as (start, end) [s]."""
+    """How evenly a log is sampled: `rate` [Hz], rms `jitter` of the steps [s], gaps as (start, end) [s]: what was left
+    out is none."""
 
     rate: float
     jitter: float
@@ -31,13 +33,14 @@ def sampling(log: MotionLog) -> Sampling:
     step, period = np.diff(log.time), log.period
     gap = step > GAP_PERIODS * period
     jitter = float(np.sqrt(np.mean((step[~gap] - period) ** 2)))
-    gaps = tuple((float(log.time[i]), float(log.time[i + 1])) for i in np.flatnonzero(gap))
-    return Sampling(1 / period, jitter, gaps)
+    spans = ((float(log.time[i]), float(log.time[i + 1])) for i in np.flatnonzero(gap))
+    return Sampling(1 / period, jitter, tuple(span for span in spans if span not in log.left_out))
 
 
 def is_even(log: MotionLog) -> bool:
-    """Whether a log stands on an even grid of its usual period."""
-    return bool(np.all(np.abs(np.diff(log.time) - log.period) < JITTER_SHARE * log.period))
+    """Whether a log stands on an even grid of its usual period, but for what is left out: it is empty before that."""
+    even = np.abs(np.diff(log.time) - log.period) < JITTER_SHARE * log.period
+    return bool(len(even) - np.count_nonzero(even) == len(log.left_out))
 
 
 def evenly_sampled(log: MotionLog) -> MotionLog:
@@ -51,7 +54,7 @@ def evenly_sampled(log: MotionLog) -> MotionLog:
     period, steps = log.period, np.diff(log.time)
     breaks = np.flatnonzero(steps > max(LONG_GAP, 2 * GAP_PERIODS * period))
     starts, ends = log.time[[0, *(breaks + 1)]], log.time[[*breaks, -1]]
-    ends[:-1] += GAP_PERIODS * period
+    ends[:-1] += max(GAP_PERIODS * period, SHOWN)
     first, last = (np.round((times - log.time[0]) / period).astype(np.int64) for times in (starts, ends))
     grid = log.time[0] + period * np.concatenate(
         [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]

@@ -65,11 +65,11 @@ def thinned(log: MotionLog) -> MotionLog:
 
 def slow_columns(read: Mapping[str, Array], period: float, cutoff: float, step: int) -> dict[str, Array]:
     """Every `step`th sample of columns (N,) without what is faster than `cutoff` [Hz], each around its own holes."""
-    whole = [name for name, values in read.items() if not np.isnan(values).any()]
-    groups = [whole[place : place + TOGETHER] for place in range(0, len(whole), TOGETHER)]
-    groups += [[name] for name in read if name not in set(whole)]
+    alike = dict[bytes, list[str]]()  # by where they have holes
+    for name, values in read.items():
+        alike.setdefault(np.packbits(np.isnan(values)).tobytes(), []).append(name)
     columns: dict[str, Array] = {}
-    for names in groups:
+    for names in (own[at : at + TOGETHER] for own in alike.values() for at in range(0, len(own), TOGETHER)):
         smooth = low_pass(np.column_stack([read[name] for name in names]), period, cutoff, every=step)
         columns |= dict(zip(names, np.ascontiguousarray(smooth.T), strict=True))
     for values in columns.values():

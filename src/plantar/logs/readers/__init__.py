@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -43,6 +44,7 @@ def open_log(
     robot: RobotModel | str | os.PathLike[str] | None = None,
     *,
     memory: int | None = None,
+    longest: float = math.inf,
 ) -> MotionLog:
     """Read one recording, whatever its format.
 
@@ -52,6 +54,7 @@ def open_log(
         robot: a robot or the path of its file: topics or column names where a format needs them, and what the log
             calls the joints.
         memory: most bytes that the log's numbers may take; a quarter of the machine's memory if left out.
+        longest: of a longer Parquet log only those stretches that move most, so many seconds in all, are read.
 
     Returns:
         The log in SI units, with the columns of `docs/log_columns.md`.
@@ -77,7 +80,7 @@ def open_log(
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
-        log = reader(path, robot, ReadLimit(path, memory))
+        log = reader(path, robot, ReadLimit(path, memory, longest=longest))
     return of_robot(log, robot)
 
 

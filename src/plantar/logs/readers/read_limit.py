@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -22,10 +23,18 @@ CONTROL_GROUP = Path("/sys/fs/cgroup/memory.max")  # a container may have less t
 
 
 class ReadLimit:
-    """The limit for one log: a file, a folder, or the `files` that belong to it. `memory` in bytes."""
+    """The limit for one log: a file, a folder, or the `files` that belong to it. `memory` in bytes; `longest`: seconds
+    of it that are worked on, so that a reader may leave out the others."""
 
-    def __init__(self, path: Path, memory: int | None = None, files: Iterable[Path] | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        memory: int | None = None,
+        files: Iterable[Path] | None = None,
+        longest: float = math.inf,
+    ) -> None:
         self.path = path
+        self.longest = longest
         self.memory = usual_memory() if memory is None else memory
         if files is None:
             files = [path] if path.is_file() else path.rglob("*")
@@ -51,13 +60,13 @@ class ReadLimit:
         if count > COLUMNS:
             raise LogError(f"has more than {COLUMNS} columns", path=self.path, valid="fewer columns")
 
-    def numbers(self, rows: int, columns: int) -> None:
-        """LogError for a table that is too large to hold."""
+    def numbers(self, rows: int, columns: int, kept: int | None = None) -> None:
+        """LogError for a table that is too large to hold; `kept`: how many of its rows are, all if left out."""
         size = NUMBER * rows * columns
         message = f"holds {rows} rows x {columns} columns, {shown(size)} as numbers"
         if size > self.unpacks_to:
             raise self.too_much(message)
-        self._fits(size, message)
+        self._fits(size if kept is None else NUMBER * kept * columns, message)
 
     def unpack(self, size: int) -> None:
         """Count bytes that came out of the files, also those that are not kept. LogError: too many."""

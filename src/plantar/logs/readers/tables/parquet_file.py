@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
-from plantar.conventions import Array
+from plantar.conventions import Array, Mask
 from plantar.errors import LogError
 from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
 from plantar.logs.readers.tables.csv_file import Choice
@@ -20,8 +20,10 @@ BUFFER = 2**18  # bytes of a column read at a time
 TOO_MANY = "Exceeded size limit"  # what the footer's decoder says of a longer list
 
 
-def read_parquet(path: Path, limit: ReadLimit, choose: Choice, *, strict: bool) -> dict[str, Array]:
-    """The chosen columns, (n,) each, in the file's order.
+def read_parquet(
+    path: Path, limit: ReadLimit, choose: Choice, rows: Mask | None = None, *, strict: bool
+) -> dict[str, Array]:
+    """The chosen columns, (n,) each, in the file's order; these `rows` of them, all if left out.
 
     A column of something else than numbers is an error; where not `strict` it is left out. Raises LogError: broken,
     or larger than `limit`.
@@ -35,9 +37,10 @@ def read_parquet(path: Path, limit: ReadLimit, choose: Choice, *, strict: bool) 
             limit.columns(len(schema.names))
             names = choose(schema.names)
             numeric = [name for name in names if _holds_numbers(schema, name, path, strict)]
-            limit.numbers(source.metadata.num_rows, len(numeric))
+            kept = None if rows is None else int(np.count_nonzero(rows))
+            limit.numbers(source.metadata.num_rows, len(numeric), kept)
             _check_unpacked(path, source.metadata, numeric, limit)
-            return _columns(source, numeric, path)
+            return _columns(source, numeric, path, rows)
     except (pa.ArrowException, OSError, UnicodeDecodeError, BrokenPage) as error:
         reason = str(error).splitlines()[0]
         if TOO_MANY in reason:
@@ -82,20 +85,24 @@ def _check_unpacked(
                     check_pages(handle, start, column.total_compressed_size, limit)
 
 
-def _columns(source: pa_parquet.ParquetFile, names: list[str], path: Path) -> dict[str, Array]:
+def _columns(
+    source: pa_parquet.ParquetFile, names: list[str], path: Path, kept: Mask | None
+) -> dict[str, Array]:
     """A column for each core after another: pages of all at once would take as much memory as their numbers."""
     rows, together = source.metadata.num_rows, pa.cpu_count()
-    values = np.empty((len(names), rows))
+    values = np.empty((len(names), rows if kept is None else np.count_nonzero(kept)))
     for first in range(0, len(names), together):
         some = names[first : first + together]
-        count = 0
+        count = place = 0
         for batch in source.iter_batches(BATCH, columns=some):
             end = count + batch.num_rows
             if end > rows:
                 break
             for row, name in zip(values[first:], some, strict=False):
-                row[count:end] = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
-            count = end
+                numbers = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+                numbers = numbers if kept is None else numbers[kept[count:end]]
+                row[place : place + len(numbers)] = numbers
+            count, place = end, place + len(numbers)
         if count != rows:
             raise LogError(f"does not hold the {rows} rows that the file claims", path=path, column=some[0])
     return dict(zip(names, values, strict=True))

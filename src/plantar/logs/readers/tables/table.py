@@ -15,6 +15,7 @@ from plantar.logs.motion_log import COLUMN, MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables.csv_file import Choice, read_csv
+from plantar.logs.stretches import Stretches, stretches_of
 from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
@@ -34,7 +35,9 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         header.extend(names)
         return _known(names, path)
 
-    columns = _columns(path, limit, choose, notes, strict=True)
+    stretches = _stretches(path, limit) if _is_parquet(path) and limit.longest < np.inf else None
+    rows = None if stretches is None else stretches.rows
+    columns = _columns(path, limit, choose, notes, rows, strict=True)
     time = columns.pop("time")
     if not time.size:
         raise LogError("holds no samples", path=path, valid="a header and one row a sample")
@@ -43,12 +46,31 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         names = listing([name or "one without a name" for name in ignored], 6)
         text = f"{path.name}: columns of no known name, not used: {names}"
         notes.append(Note("columns_ignored", "info", text))
+    if stretches is not None:
+        for values in columns.values():
+            values[stretches.blank] = np.nan
     keep = _increasing(time, path, notes)
     if not keep.all():
         time, columns = time[keep], {name: values[keep] for name, values in columns.items()}
     for values in (time, *columns.values()):
         values.setflags(write=False)  # handed over, not copied
-    return MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
+    log = MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
+    return log if stretches is None else stretches.log(log)
+
+
+def _stretches(path: Path, limit: ReadLimit) -> Stretches | None:
+    """Those of a Parquet file that move most; None where it is no longer than the limit. Raises LogError."""
+    names: list[str] = []
+
+    def read(name: str) -> Array:
+        return _columns(path, limit, lambda _: [name], [], strict=True)[name]
+
+    def choose(header: Sequence[str]) -> list[str]:
+        names.extend(_known(header, path))
+        return ["time"]
+
+    time = _columns(path, limit, choose, [], strict=True)["time"]
+    return stretches_of(time, names, read, limit.longest)
 
 
 def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array]:
@@ -61,14 +83,25 @@ def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array
     return columns
 
 
+def _is_parquet(path: Path) -> bool:
+    return path.name.lower().endswith(".parquet")
+
+
 def _columns(
-    path: Path, limit: ReadLimit, choose: Choice, notes: list[Note], *, strict: bool
+    path: Path,
+    limit: ReadLimit,
+    choose: Choice,
+    notes: list[Note],
+    rows: Mask | None = None,
+    *,
+    strict: bool,
 ) -> dict[str, Array]:
-    if not path.name.lower().endswith(".parquet"):
+    """The chosen columns; of Parquet, these `rows` of them alone."""
+    if not _is_parquet(path):
         return read_csv(path, limit, choose, notes, strict=strict)
     from plantar.logs.readers.tables.parquet_file import read_parquet  # Arrow costs start-up
 
-    return read_parquet(path, limit, choose, strict=strict)
+    return read_parquet(path, limit, choose, rows, strict=strict)
 
 
 def _known(names: Sequence[str], path: Path) -> list[str]:
