@@ -15,7 +15,7 @@ from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.filters import low_pass
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
-from twin_samples import walked
+from twin_samples import planned_part, walked
 
 COLUMNS, SAMPLES, PERIOD = 24, 400, 0.1  # as of a log of 40 s below 2 Hz
 
@@ -99,7 +99,7 @@ def test_zeros_that_differ_between_recordings_are_no_gain_of_torques(size: float
     robot, random = hrp2.robot(), np.random.default_rng(0)
     residuals = []
     for motion in ("Squat", "Tilt3"):
-        log = checked(robot, play_all([motion], robot, PAPER, "ideal", [0])[0][0].log)
+        log = checked(robot, play_all([planned_part(motion, robot)], robot, PAPER, "ideal", [0])[0][0].log)
         weight = size * robot.mass * GRAVITY
         zeros = {
             name: random.choice([-1, 1]) * weight * (0.1 if ".torque." in name else 1.0)
