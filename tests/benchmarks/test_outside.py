@@ -20,6 +20,7 @@ from plantar.conventions import Array
 from plantar.robot.model import RobotModel, load_robot
 
 SECONDS = 8.0
+SEEN = slice(3000, 6000)  # of its milliseconds
 SEED = 3
 
 
@@ -36,11 +37,12 @@ def played(robot: RobotModel, request: pytest.FixtureRequest) -> tuple[Motion, d
 
 
 def at_bush(robot: RobotModel, motion: Motion, foot: str, stiffness: float) -> tuple[Array, Array]:
-    """Torque about the sinking bush's y axis (n,), and the sole's pitch against the ankle (n,)."""
+    """In the SEEN rows, torque about the sinking bush's y axis (n,), and the sole's pitch against the ankle (n,)."""
     model, side = robot.model, robot.feet[foot]
     assert robot.imu is not None
     data, pitch, torque = model.createData(), [], []
-    for joints, seen, wrench in zip(motion.joints, motion.orientation, motion.wrenches[foot], strict=True):
+    read = (motion.joints[SEEN], motion.orientation[SEEN], motion.wrenches[foot][SEEN])
+    for joints, seen, wrench in zip(*read, strict=True):
         pin.forwardKinematics(model, data, joints)
         parts = [robot.frame(place) for place in (robot.imu.placement, side.bush, side.wrench.placement)]
         imu, bush, sensor = ((data.oMi[joint] * place) for joint, place in parts)
@@ -68,7 +70,7 @@ def test_torque_is_spring_damper_and_sliding_element(
 ) -> None:
     motion, rubber = played
     torque, pitch = at_bush(robot, motion, "left", rubber["left"].stiffness)
-    hinge, rate = rubber["left"].pitch, np.gradient(pitch, motion.time)
+    hinge, rate = rubber["left"].pitch, np.gradient(pitch, motion.time[SEEN])
     rest = torque - hinge.stiffness * pitch - hinge.damping * rate
     if hinge.slip_torque:
         inside = np.diff(rest)[50:-50] / np.diff(pitch)[50:-50]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,12 @@ from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
 from plantar.twin import fleet
 from plantar.twin.robots.hrp2 import write
-from twin_samples import plan, short
+from twin_samples import plan, planned_part, short
+
+
+@pytest.fixture(autouse=True)
+def parts_of_motions(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(import_module("plantar.twin.play"), "planned", planned_part)
 
 
 def run(*arguments: str) -> int:
@@ -36,9 +42,9 @@ def test_logs_truth_and_robot_file_appear(tmp_path: Path, capsys: pytest.Capture
     assert run("Squat", "--out", str(tmp_path), "--preset", "sensors", "--seed", "3") == 0
     robot = load_robot(tmp_path / "robot.yaml")
     log = open_log(tmp_path / "Squat.parquet", robot)
-    assert log.duration == pytest.approx(20.0)
+    assert log.duration == pytest.approx(9.995)
     assert log.period == pytest.approx(0.005)
-    assert log.positions(robot).shape == (4001, 30)
+    assert log.positions(robot).shape == (2000, 30)
     assert json.loads((tmp_path / "Squat.truth.json").read_text())["seed"] == 3
     said = capsys.readouterr()
     assert "Squat" in said.out

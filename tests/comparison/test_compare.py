@@ -105,7 +105,7 @@ def log_positions(robot: RobotModel, log: MotionLog, like: Plan) -> Array:
 
 @pytest.fixture(scope="module")
 def compared(result: FeetResult, log: MotionLog) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
-    return compare(result, hrp2.robot(), [first(log, 4.0)])
+    return compare(result, hrp2.robot(), [first(log, 3.0)])
 
 
 @pytest.mark.slow

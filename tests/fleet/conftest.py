@@ -1,17 +1,27 @@
-"""One worker for all tests of a file: to start it takes longer than most of what they give it, and it is never idle
-for free, so that it does not live on through the rest of the session."""
+"""One worker for all tests of a file, a thread of this process: a process of its own would load everything again. Those
+of users are processes; the tests of commands start them."""
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from plantar.fleet.cluster import connected
-
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
-    with connected(1, None, None) as found:
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            protocol="tcp://",
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+        ) as cluster,
+        distributed.Client(cluster, set_as_default=False) as found,
+    ):
         yield found

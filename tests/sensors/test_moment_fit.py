@@ -15,9 +15,10 @@ from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.filters import low_pass
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
-from twin_samples import walked
+from twin_samples import planned_part, walked
 
 COLUMNS, SAMPLES, PERIOD = 24, 400, 0.1  # as of a log of 40 s below 2 Hz
+NONE = np.zeros(0)
 
 
 def swaying(random: np.random.Generator) -> Array:
@@ -30,14 +31,23 @@ def swaying(random: np.random.Generator) -> Array:
     return random.normal(size=(COLUMNS, len(tones))) @ tones + 0.3 * slow
 
 
-def log_of(columns: Array, missing: Array) -> MomentErrors:
-    """One row of Newton's law, the other five without a signal."""
+def log_of(columns: Array, missing: Array, zeros: Array = NONE) -> MomentErrors:
+    """One row of Newton's law, the other five without a signal. zeros: deviations of those in the last columns."""
     both = np.concatenate([missing[None], columns])
     rows = np.array([both, *(np.zeros((5, *both.shape)) + 1e-9 * both)])
     products = np.array([part @ part.transpose(0, 2, 1) for part in np.array_split(rows, PARTS, axis=2)])
-    return MomentErrors(
-        rows[:, 1:], rows[:, 0], products, np.zeros((6, COLUMNS, 0)), PERIOD, 0.4, np.zeros(0)
-    )
+    return MomentErrors(rows[:, 1:], rows[:, 0], products, np.zeros((6, len(columns), 0)), PERIOD, 0.4, zeros)
+
+
+def test_each_log_has_zeros_of_its_own() -> None:
+    """What goes with the sway as a zero's moment does is no error that all logs share."""
+    random, logs = np.random.default_rng(0), []
+    for size in (5.0, 1.0):
+        columns = swaying(random)
+        zero = columns[0] + swaying(random)[0]
+        noise = 0.01 * low_pass(random.normal(size=SAMPLES), PERIOD, 1.0)
+        logs.append(log_of(np.vstack([columns, zero]), size * zero + noise, np.array([10.0])))
+    assert abs(solved(logs, np.full(COLUMNS, 3.0))[0][0]) < 0.05
 
 
 def test_deviations_are_as_large_as_errors_where_many_columns_follow_few_frequencies() -> None:
@@ -99,7 +109,7 @@ def test_zeros_that_differ_between_recordings_are_no_gain_of_torques(size: float
     robot, random = hrp2.robot(), np.random.default_rng(0)
     residuals = []
     for motion in ("Squat", "Tilt3"):
-        log = checked(robot, play_all([motion], robot, PAPER, "ideal", [0])[0][0].log)
+        log = checked(robot, play_all([planned_part(motion, robot)], robot, PAPER, "ideal", [0])[0][0].log)
         weight = size * robot.mass * GRAVITY
         zeros = {
             name: random.choice([-1, 1]) * weight * (0.1 if ".torque." in name else 1.0)

@@ -23,6 +23,7 @@ from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate, shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
+from twin_samples import planned_part
 
 CLOCK = 0.06
 
@@ -84,7 +85,7 @@ def test_a_log_with_gaps_shows_its_delay_in_every_run() -> None:
 def test_encoders_that_are_read_late_move_what_the_feet_read_too() -> None:
     """Joints say where a foot pushes: where legs move, that is more than what their inertia makes of a delay."""
     twin, late = hrp2.robot(), 0.002
-    squat = checked(twin, play_all(["Squat"], twin, PAPER, "ideal", [0])[0][0].log)
+    squat = checked(twin, play_all([planned_part("Squat", twin)], twin, PAPER, "ideal", [0])[0][0].log)
     (before,) = newton_euler_residuals(twin, squat)
     assert before.pair.model_errors.shape == (48, *before.pair.predicted.shape), "every drawn URDF takes part"
     (after,) = newton_euler_residuals(twin, read_in_time(twin, squat, np.array([0.0, 0.0, late])))

@@ -13,6 +13,7 @@ from plantar.motions.body import Body
 from plantar.motions.gait import Gait
 from plantar.motions.stance import stand
 from plantar.motions.walk import walk_plan
+from plantar.robot.model import RobotModel
 from plantar.twin import cache as kept
 from plantar.twin.keep import plan_arrays, plan_from
 from plantar.twin.play import planned, rolled
@@ -41,6 +42,14 @@ def short(plan: Plan, start: float, end: float) -> Plan:
         hand=hand,
         walk=walk,
     )
+
+
+PARTS = {"Tilt3": (14.5, 34.5), "Squat": (0.0, 10.0)}  # s: from leaning forward to leaning aside; two bows
+
+
+def planned_part(motion: str, robot: RobotModel, **options: float | None) -> Plan:
+    """As `planned`, what shows all that the motion has to show in half of its time."""
+    return short(planned(motion, robot, **options), *PARTS[motion])
 
 
 @cache

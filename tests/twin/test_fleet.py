@@ -14,10 +14,11 @@ from plantar.feet.settings import FeetSettings
 from plantar.twin.bush import PAPER
 from plantar.twin.fleet import AGEING, DRIFT, NEW_SOLE, STEP, stories, write_fleet
 from plantar.twin.other_rubber import ankle_joints, on_other_rubber
-from plantar.twin.play import planned, rolled
+from plantar.twin.play import rolled
 from plantar.twin.presets import preset_named
 from plantar.twin.recording import record
 from plantar.twin.robots import hrp2
+from twin_samples import planned_part
 
 MOTION = "Tilt3"
 SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
@@ -26,7 +27,7 @@ SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
 def test_softer_rubber_is_found_softer() -> None:
     robot, preset = hrp2.robot(), preset_named("ideal")
     physics = preset.physics(PAPER)
-    rollout = rolled(planned(MOTION, robot), robot, physics)
+    rollout = rolled(planned_part(MOTION, robot), robot, physics)
     shares = {"left": 0.92, "right": 1.05}
     log = record(on_other_rubber(rollout, robot, shares), robot, physics, preset, 0).log
     found = identify_feet(robot, log, settings=SETTINGS)
@@ -39,7 +40,7 @@ def test_softer_rubber_is_found_softer() -> None:
 
 def test_the_same_rubber_is_the_same_rollout() -> None:
     robot = hrp2.robot()
-    rollout = rolled(planned(MOTION, robot), robot, preset_named("ideal").physics(PAPER))
+    rollout = rolled(planned_part(MOTION, robot), robot, preset_named("ideal").physics(PAPER))
     same = on_other_rubber(rollout, robot, {"left": 1.0})
     assert np.array_equal(same.positions, rollout.positions)
     assert np.array_equal(same.bush["left"], rollout.bush["left"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -124,6 +125,17 @@ def test_a_memory_that_was_not_chosen_still_explains_what_looks_like_a_jump() ->
     assert told is not None
     assert told.choice is not None
     assert len(zero_jumps(jumped, replace(told, model=KelvinVoigt()), False)) == 1
+
+
+def test_beside_a_memory_that_was_chosen_no_other_explains_a_jump() -> None:
+    """A push turns the element just behind the jump, so that it follows nearly all of it and its misfit shows none."""
+    time = PERIOD * np.arange(COUNT)
+    pushed = 0.01 * sum(side * np.exp(-(((time - at) / 0.7) ** 2)) for side, at in ((-1, 4.0), (1, 33.5)))
+    recordings = swaying(PLAIN, 1.5 * LATER, angle=0.05 * swayed(COUNT, seed=0) + pushed)
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model="elastoplastic"))
+    assert fit is not None
+    exact = Mock(model=fit.model, fit=Mock(residuals={each.name: np.zeros(1) for each in recordings}))
+    assert len(zero_jumps(recordings, replace(fit, choice=Mock(ranking=(exact,))), False)) == 1
 
 
 def test_an_element_that_just_slips_once_is_no_jump_of_a_zero() -> None:

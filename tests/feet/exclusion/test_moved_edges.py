@@ -37,6 +37,13 @@ def test_without_a_zero_that_shows_no_edge_is_moved(cop_x: np.ndarray) -> None:
     assert not moved(cop_x).any()
 
 
+@pytest.mark.parametrize(("samples", "is_moved"), [(3, False), (4, True)])
+def test_forty_milliseconds_beyond_an_edge_move_the_opposite_one(samples: int, is_moved: bool) -> None:
+    found = moved(np.where(np.arange(COUNT) < samples, 0.037, 0.02 * SWAY))
+    assert found[:, BACK].any() == is_moved
+    assert not np.delete(found, BACK, axis=1).any()
+
+
 @pytest.mark.parametrize(("side", "edge"), [(1.0, FRONT), (-1.0, BACK)])
 def test_where_the_torque_stops_while_the_foot_turns_on_is_an_edge(side: float, edge: int) -> None:
     angle = side * (0.015 + 0.03 * SWAY)

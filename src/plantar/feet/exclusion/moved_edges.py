@@ -39,7 +39,8 @@ def _passed_opposite(moments: Array, polygon: Array, fewest: int) -> Array:
     It cannot leave the sole: the torque is wrong by that distance times the load at least, and an edge on the other
     side, if it was not passed itself, is reached that much earlier.
     """
-    beyond = -np.partition(moments, fewest - 1, axis=0)[fewest - 1].clip(max=0.0)
+    last = fewest - 1
+    beyond = -np.partition(moments, last, axis=0)[last].clip(max=0.0)
     normals = edge_normals(polygon)
     inwards = ((-normals @ normals.T).clip(min=0.0) * beyond).max(axis=1)
     return np.where(beyond > 0, 0.0, inwards)
