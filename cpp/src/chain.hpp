@@ -39,4 +39,16 @@ enum ChainOutput {
   CHAIN_OUTPUTS = 19
 };
 
+// The paths of some feet beside each other, INSTANTS columns each: of every step its frame, how far the joint's position
+// turns and slides what follows (+1, -1 or 0), position and velocity; then bush and sole. Each number stands in as many
+// doubles as the kernels have lanes.
+constexpr int INSTANTS = 2;
+enum BundleRow { STEP_ROTATION = 0, STEP_ORIGIN = 9, TURNS = 12, SLIDES = 13, POSITION = 14, VELOCITY = 15, STEP_ROWS = 16 };
+enum BundleEnd { BUSH_ROTATION = 0, BUSH_ORIGIN = 9, SOLE_ROTATION = 12, SOLE_ORIGIN = 21, END_ROWS = 24 };
+
+struct Bundle {
+  const double* rows;  // (n_steps * STEP_ROWS + END_ROWS, lanes)
+  std::size_t n_steps;
+};
+
 }  // namespace plantar

@@ -18,6 +18,7 @@ struct Kernels {
   std::size_t link_work;
   std::size_t qr_work;
   void (*chain)(const Chain&, const Attitude&, std::size_t begin, std::size_t end, double* const* out);
+  void (*chain_bundle)(const Bundle&, const Attitude&, double* out);
   void (*sole_load)(const SoleLoad&, std::size_t begin, std::size_t end, double* const* out);
   void (*regressor)(const Tree&, const Motion&, const std::uint32_t* kept, const RowSink* sinks, std::size_t begin,
                     std::size_t end, std::size_t offset, double* work);

@@ -27,6 +27,13 @@ PLANTAR_INLINE Lanes splat(double x) { return Lanes{} + x; }
 PLANTAR_INLINE Lanes load(const double* p) { return *reinterpret_cast<const LanesUnaligned*>(p); }
 PLANTAR_INLINE void store(double* p, Lanes x) { *reinterpret_cast<LanesUnaligned*>(p) = x; }
 
+// Numbers of which each lane has its own, one behind the other.
+struct LaneRows {
+  const double* data;
+  PLANTAR_INLINE Lanes operator[](int row) const { return load(data + row * LANES); }
+  PLANTAR_INLINE LaneRows operator+(int rows) const { return {data + rows * LANES}; }
+};
+
 PLANTAR_INLINE Lanes sqrt(Lanes x) {
   for (int l = 0; l < LANES; ++l) x[l] = __builtin_sqrt(x[l]);
   return x;
@@ -85,10 +92,14 @@ PLANTAR_INLINE void sincos(Lanes x, Lanes& sine, Lanes& cosine) {
   sine = (quadrant & 2) != 0 ? -a : a;
   cosine = ((quadrant + 1) & 2) != 0 ? -b : b;
   const Bits far = !(abs(x) < 1e5);
-  for (int l = 0; l < LANES; ++l) {
-    if (far[l]) {
-      sine[l] = __builtin_sin(x[l]);
-      cosine[l] = __builtin_cos(x[l]);
+  std::int64_t any = 0;
+  for (int l = 0; l < LANES; ++l) any |= far[l];
+  if (__builtin_expect(any != 0, 0)) {
+    for (int l = 0; l < LANES; ++l) {
+      if (far[l]) {
+        sine[l] = __builtin_sin(x[l]);
+        cosine[l] = __builtin_cos(x[l]);
+      }
     }
   }
 }

@@ -41,9 +41,13 @@ PLANTAR_INLINE Vec3 turned_back(const double* r, Vec3 a) {
           r[2] * a.x + r[5] * a.y + r[8] * a.z};
 }
 
-// Times a constant matrix or vector, row-major, the same for all lanes.
-PLANTAR_INLINE Vec3 times(const Mat3& m, const double* v) { return v[0] * m.x + v[1] * m.y + v[2] * m.z; }
-PLANTAR_INLINE Mat3 times_matrix(const Mat3& m, const double* r) {
+// Times a constant matrix or vector, row-major: of doubles, the same for all lanes, or of `LaneRows`.
+template <class Numbers>
+PLANTAR_INLINE Vec3 times(const Mat3& m, Numbers v) {
+  return v[0] * m.x + v[1] * m.y + v[2] * m.z;
+}
+template <class Numbers>
+PLANTAR_INLINE Mat3 times_matrix(const Mat3& m, Numbers r) {
   return {r[0] * m.x + r[3] * m.y + r[6] * m.z, r[1] * m.x + r[4] * m.y + r[7] * m.z,
           r[2] * m.x + r[5] * m.y + r[8] * m.z};
 }

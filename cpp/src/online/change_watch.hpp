@@ -49,7 +49,10 @@ class ChangeWatch {
     in_time_.add(plain), delayed_.add(delayed);
     ++rows_, time_ += dt;
   }
-  void forget() noexcept { drop(), softer_ = stiffer_ = suspected_ = 0.0, probes_ = 0; }
+  void forget() noexcept {
+    if (rows_ > 0) drop();
+    softer_ = stiffer_ = suspected_ = 0.0, probes_ = 0;
+  }
   // Nothing speaks for a change, and no probe has begun.
   bool calm() const noexcept { return rows_ == 0 && softer_ == 0.0 && stiffer_ == 0.0; }
   // What speaks for a change to either side [log-likelihood].

@@ -39,8 +39,9 @@ class RepeatWatch {
     time_ = same ? time_ + dt : 0.0, samples_ = same ? samples_ + 1 : 0;
     stuck_ = time_ > FROZEN_TIME && samples_ >= FROZEN_SAMPLES;
     if (stuck_) return true;
-    const double news = dt / std::clamp(seen_ + dt, std::max(dt, 1e-9), NOISY_TIME);
-    seen_ += dt, repeats_ += std::min(news, 1.0) * (same - repeats_);
+    seen_ += dt;
+    const double news = seen_ > NOISY_TIME ? std::min(dt * (1.0 / NOISY_TIME), 1.0) : dt / std::max(seen_, 1e-9);
+    repeats_ += news * (same - repeats_);
     return false;
   }
 
@@ -103,17 +104,16 @@ class JointWatch {
   }
   // Whether it stands where it should not. leg: the way of the joints of its leg [rad or m].
   bool stuck(const JointWatch& twin, double leg) noexcept {
-    const double limit = std::max({LEFT_BEHIND, FROZEN_STEPS * step_, BEYOND_USUAL * usual_});
+    const auto limit = [&](double least) { return std::max({least, FROZEN_STEPS * step_, BEYOND_USUAL * usual_}); };
     if (repeats_.changed()) {
-      if (passed_ <= limit) usual_ = std::max(usual_, passed_);
+      if (passed_ > 0.0 && passed_ <= limit(LEFT_BEHIND)) usual_ = std::max(usual_, passed_);
       twin_then_ = twin.moved_, leg_then_ = leg, passed_ = 0.0;
     }
-    doubtful_ =
-        repeats_.stuck() && twin.moved_ - twin_then_ > std::max({LEAST_WAY, FROZEN_STEPS * step_, BEYOND_USUAL * usual_});
+    doubtful_ = repeats_.stuck() && twin.moved_ - twin_then_ > limit(LEAST_WAY);
     if (!repeats_.stuck()) return false;
     silent_ = silent_ || twin.repeats_.stuck();
     passed_ = std::min(twin.moved_ - twin_then_, leg - leg_then_);
-    return passed_ > limit || (!silent_ && repeats_.noisy() && twin.repeats_.noisy());
+    return passed_ > limit(LEFT_BEHIND) || (!silent_ && repeats_.noisy() && twin.repeats_.noisy());
   }
   // Whether it stands while its twin moves twice as far as it ever did before this one moved again: nothing may be
   // wrong, but nothing is learnt from it.

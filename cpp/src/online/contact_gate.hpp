@@ -2,9 +2,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "online/one_pole.hpp"
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
@@ -27,7 +26,7 @@ class ContactGate {
   // load: vertical force [N], zero taken off; others: of the other feet; flat: whether the pressure is inside the sole.
   ContactState step(double load, double others, bool flat, bool zero_known, double dt) noexcept {
     if (always_) return contact_ = ContactState::stance;
-    const double blend = first_ ? 1.0 : 1.0 - std::exp(-2 * std::numbers::pi * FORCE_BAND * dt);
+    const double blend = first_ ? 1.0 : followed_in_band(FORCE_BAND, dt);
     smooth_ += blend * (load - smooth_);
     first_ = false;
     const bool light = !zero_known && smooth_ < LIGHT * weight_ && others > OTHERS_CARRY * weight_;

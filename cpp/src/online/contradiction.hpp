@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "online/one_pole.hpp"
 #include "online/white_noise.hpp"
 
 namespace plantar {
@@ -29,8 +30,6 @@ constexpr double LOAD_TIME = 0.4;      // s over which the feet's load is compar
 constexpr double LOAD_DIFFERS = 0.15;  // of the weight: a step's rest is less
 constexpr double WRONG_MASS = 0.2;     // of the weight: gains and a mass that is not the model's
 constexpr double LOAD_ZERO = 0.15;     // of the weight, of each foot that has not swung yet
-
-inline double one_pole(double dt, double time) noexcept { return 1.0 - std::exp(-dt / time); }
 
 // The turning of the vertical, as attitude and gyroscope tell it: yaw is of no account.
 class TurnWatch {
@@ -59,11 +58,12 @@ class TurnWatch {
     const Vector by_rate = {middle[1] * rate[2] - middle[2] * rate[1], middle[2] * rate[0] - middle[0] * rate[2],
                             middle[0] * rate[1] - middle[1] * rate[0]};
     age_ += dt;
-    const double edge = 2.0 * std::numbers::pi * TURN_BAND, pass = one_pole(dt, 1.0 / edge);
-    const double learnt = std::max(one_pole(dt, ZERO_TIME), dt / age_);
+    const double edge = 2.0 * std::numbers::pi * TURN_BAND, pass = followed_after(edge * dt);
+    const double learnt = std::max(followed_after(dt / ZERO_TIME), dt / age_);
+    const double ticks = 1.0 / dt;  // in a second
     double attitude = 0.0, gyroscope = 0.0, between = 0.0, without_zero = 0.0, common = 0.0;  // squares
     for (int i = 0; i < 3; ++i) {
-      const double told[2] = {(up[i] - before[i]) / dt, by_rate[i]};
+      const double told[2] = {(up[i] - before[i]) * ticks, by_rate[i]};
       for (int a = 0; a < 2; ++a)
         filtered_[a][i] += pass * (std::clamp(told[a], -FASTEST_TURN, FASTEST_TURN) - filtered_[a][i]);
       const double differs = filtered_[0][i] - filtered_[1][i] - zero_[i];
@@ -77,7 +77,7 @@ class TurnWatch {
     const double turns = TURNS_DIFFER * TURNS_DIFFER * std::max(attitude, gyroscope);
     const double likely = std::max({LEAST_TURN * LEAST_TURN, noise, turns});
     if (between <= likely) followed_.see(attitude - white, without_zero, common, dt);
-    share_ = std::min(share_ + one_pole(dt, TURN_TIME) * ((between > likely) - share_), MOST_SHARE);
+    share_ = std::min(share_ + followed_after(dt / TURN_TIME) * ((between > likely) - share_), MOST_SHARE);
     return share_ > TURN_SHARE || followed_.apart(white) ||
            between > TURNS_SURE * TURNS_SURE * std::max(likely, LEAST_SURE * LEAST_SURE);
   }
@@ -90,7 +90,7 @@ class TurnWatch {
 
     void see(double by_attitude, double by_gyroscope, double both, double dt) noexcept {
       age += dt;
-      const double news = std::max(one_pole(dt, ZERO_TIME), dt / age);
+      const double news = std::max(followed_after(dt / ZERO_TIME), dt / age);
       attitude += news * (by_attitude - attitude), gyroscope += news * (by_gyroscope - gyroscope);
       common += news * (both - common);
     }
@@ -118,10 +118,10 @@ class WeightWatch {
 
   // total: what all feet carry [N]; unknown: of how many of them no swing has shown the zero.
   bool differs(double total, int unknown, double dt) noexcept {
-    mean_ += one_pole(dt, LOAD_TIME) * (total - mean_);
+    mean_ += followed_after(dt / LOAD_TIME) * (total - mean_);
     if (std::abs(mean_ - usual_) > (LOAD_DIFFERS + LOAD_ZERO * unknown) * weight_) return true;
     if (unknown > 0) return false;
-    usual_ += one_pole(dt, ZERO_TIME) * (mean_ - usual_);
+    usual_ += followed_after(dt / ZERO_TIME) * (mean_ - usual_);
     usual_ = std::clamp(usual_, (1.0 - WRONG_MASS) * weight_, (1.0 + WRONG_MASS) * weight_);
     return false;
   }

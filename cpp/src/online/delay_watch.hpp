@@ -31,7 +31,7 @@ class DelayWatch {
   // it.
   bool late(const Lateness& seen, double told_std, double period) noexcept {
     if (!(seen.weight > 0.0)) return late_;
-    const double half = std::hypot(1.0 / std::sqrt(seen.weight), NORMAL_HALF * told_std);
+    const double told = NORMAL_HALF * told_std, half = std::sqrt(1.0 / seen.weight + told * told);
     const double found = std::abs(seen.sum / seen.weight), least = std::max(LATENESS, period);
     return late_ = late_ ? found + half > least : found > std::max(least, SURE_OF_LATE * half);
   }

@@ -4,7 +4,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "online/one_pole.hpp"
 
 namespace plantar {
 
@@ -24,7 +25,7 @@ class EdgeWatch {
   // of the ankle over the ground; bent: what the torque explains of it [rad].
   bool step(double inside, double load, const std::array<double, 2>& angle, const std::array<double, 2>& bent,
             double dt) noexcept {
-    const double blend = first_ ? 1.0 : 1.0 - std::exp(-2.0 * std::numbers::pi * LEAN_BAND * dt);
+    const double blend = first_ ? 1.0 : followed_in_band(LEAN_BAND, dt);
     first_ = false;
     for (int a = 0; a < 2; ++a) {
       angle_[a] += blend * (angle[a] - angle_[a]);
@@ -38,10 +39,14 @@ class EdgeWatch {
       explained[a] = bent_[a] - flat_bent_[a];
       beyond[a] = angle_[a] - flat_angle_[a] - explained[a];
     }
-    return std::hypot(beyond[0], beyond[1]) > LEAST_LEAN + SOFTER_BUSH * std::hypot(explained[0], explained[1]);
+    return length(beyond) > LEAST_LEAN + SOFTER_BUSH * length(explained);
   }
 
  private:
+  static double length(const std::array<double, 2>& plane) noexcept {
+    return std::sqrt(plane[0] * plane[0] + plane[1] * plane[1]);
+  }
+
   double weight_;
   bool first_ = true, visiting_ = false;
   std::array<double, 2> angle_ = {}, bent_ = {};            // behind the band

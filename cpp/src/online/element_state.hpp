@@ -26,11 +26,13 @@ class ElementState {
   double gap() const noexcept { return 0.5 * (high_.state - low_.state); }
 
   // Nothing is known of it but its slip angle and the bush's `angle` [rad].
-  void begin(double slip, double angle) noexcept { slip_ = slip, low_ = {-1.0, angle}, high_ = {1.0, angle}; }
+  void begin(double slip, double angle) noexcept {
+    slip_ = slip, in_slips_ = 1.0 / slip, low_ = {-1.0, angle}, high_ = {1.0, angle};
+  }
   // The bush on the ground is bent to `angle` [rad].
-  void load(double angle) noexcept { low_.bend(angle, slip_), high_.bend(angle, slip_); }
+  void load(double angle) noexcept { low_.bend(angle, in_slips_), high_.bend(angle, in_slips_); }
   // The same from one period's mean of both ends to the next one's; then the state is that of both ends, too.
-  void follow(double angle) noexcept { low_.follow(angle, slip_), high_.follow(angle, slip_); }
+  void follow(double angle) noexcept { low_.follow(angle, in_slips_), high_.follow(angle, in_slips_); }
   // The sole has turned with the ankle for a while, the bush hardly. It is at `angle` now.
   void hold(double angle) noexcept {
     low_.angle = high_.angle = angle;
@@ -46,15 +48,16 @@ class ElementState {
   struct Bound {
     double state = 0.0, angle = 0.0;
 
-    void bend(double to, double slip) noexcept {
-      state = std::clamp(state + (to - angle) / slip, -1.0, 1.0);
+    // in_slips: one over the slip angle.
+    void bend(double to, double in_slips) noexcept {
+      state = std::clamp(state + (to - angle) * in_slips, -1.0, 1.0);
       angle = to;
     }
     // The end of the last period is half a step on. Where it slips within this one, it has that end's way left to slip,
     // and in the mean of both ends half of it.
-    void follow(double to, double slip) noexcept {
-      const double step = (to - angle) / slip, half = 0.5 * std::abs(step), beyond = std::abs(state + step) - 1.0;
-      bend(to, slip);
+    void follow(double to, double in_slips) noexcept {
+      const double step = (to - angle) * in_slips, half = 0.5 * std::abs(step), beyond = std::abs(state + step) - 1.0;
+      bend(to, in_slips);
       if (beyond > -half) state = std::copysign(1.0 - 0.5 * std::max(half - beyond, 0.0), step);
     }
     // No torque: angle + pull·state = 0, with a state that sticks on the way or slips.
@@ -71,7 +74,7 @@ class ElementState {
     low_.state = std::max(low_.state - by, -1.0), high_.state = std::min(high_.state + by, 1.0);
   }
 
-  double slip_ = 1.0;
+  double slip_ = 1.0, in_slips_ = 1.0;
   Bound low_, high_;
 };
 

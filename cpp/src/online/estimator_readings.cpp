@@ -50,13 +50,12 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
   }
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(length > 0.0)) return false;
+  const double scale = 1.0 / length;
   double dot = 0.0;
-  for (int i = 0; i < 4; ++i) q[i] /= length, dot += q[i] * last_quaternion[i];
+  for (int i = 0; i < 4; ++i) q[i] *= scale, dot += q[i] * last_quaternion[i];
   const double same = dot < 0.0 ? -1.0 : 1.0;  // q and -q are one attitude
   for (int i = 0; i < 4; ++i) {
-    quaternion[i][0] = q[i];
-    quaternion[i][1] = known ? q[i] + same * last_quaternion[i] : q[i];
-    quaternion[i][2] = quaternion[i][3] = q[i];
+    paths.set_attitude(i, {q[i], known ? q[i] + same * last_quaternion[i] : q[i]});
   }
   if (!gyroscope && known) {  // the turn since the last tick, over its time
     const double* p = last_quaternion;
@@ -65,15 +64,15 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
                             p[0] * q[3] - p[3] * q[0] - p[1] * q[2] + p[2] * q[1]};
     for (int i = 0; i < 3; ++i) w[i] = 2.0 * same * turn[i] / dt;
   }
+  double turning[3];  // in the middle of the period
   for (int i = 0; i < 3; ++i) {
-    angular_velocity[i][0] = angular_velocity[i][2] = angular_velocity[i][3] = w[i];
-    angular_velocity[i][1] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
+    turning[i] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
+    paths.set_angular_velocity(i, {w[i], turning[i]});
     last_rate[i] = w[i];
   }
   if (!known) turn_watch.restart();
   const TurnWatch::Vector up = {2.0 * (q[1] * q[3] - q[0] * q[2]), 2.0 * (q[2] * q[3] + q[0] * q[1]),
                                 1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2])};
-  const double turning[3] = {angular_velocity[0][1], angular_velocity[1][1], angular_velocity[2][1]};
   turns_differ = gyroscope && reading.attitude.size() == 4 && dt > 0.0 && turn_watch.differ(up, turning, dt);
   std::copy_n(q, 4, last_quaternion);
   return true;
@@ -81,6 +80,7 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
 
 void FootEstimator::State::joints(const Reading& reading) noexcept {
   const bool given = reading.velocity.size() == model.joints.size();
+  const double rate = known ? 1.0 / dt : 0.0;  // ticks in a second
   for (const int j : moving) {
     const double q = reading.position[j], v = given ? reading.velocity[j] : 0.0;
     joint_bad[j] = 0;
@@ -91,10 +91,8 @@ void FootEstimator::State::joints(const Reading& reading) noexcept {
     }
     if (joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
     const bool read = known && last_position[j] != UNREAD;
-    const double difference = read ? (q - last_position[j]) / dt : 0.0;
-    position[TICKS * j] = position[TICKS * j + 2] = position[TICKS * j + 3] = q;
-    position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
-    velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
+    const double difference = read ? (q - last_position[j]) * rate : 0.0;
+    paths.set(j, {q, read ? 0.5 * (q + last_position[j]) : q}, {given ? v : difference, difference});
     last_position[j] = q;
   }
   for (const FootModel& foot : model.feet) {
@@ -108,25 +106,6 @@ void FootEstimator::State::joints(const Reading& reading) noexcept {
       if (joint_watch[j].stuck(joint_watch[twin[j]], leg) || joint_dead[j]) joint_bad[j] |= FROZEN;
     }
   }
-}
-
-void FootEstimator::State::kinematics(std::size_t foot) noexcept {
-  const Chain chain = {steps[foot].data(), steps[foot].size(), model.feet[foot].bush, model.feet[foot].sole};
-  Attitude attitude;
-  for (int i = 0; i < 4; ++i) attitude.quaternion[i] = {quaternion[i], 1};
-  for (int i = 0; i < 3; ++i) attitude.angular_velocity[i] = {angular_velocity[i], 1};
-  double* rows[CHAIN_OUTPUTS];
-  for (int r = 0; r < CHAIN_OUTPUTS; ++r) rows[r] = out[r];
-  kernels.chain(chain, attitude, 0, TICKS, rows);
-  FootKinematics& to = motion[foot];
-  for (int i = 0; i < 3; ++i) to.up[i] = out[UP + i][0];
-  for (int i = 0; i < 2; ++i) {
-    to.angle[i] = out[DEFLECTION + i][0], to.mean_angle[i] = out[DEFLECTION + i][1];
-    to.rate[i] = out[RATE + i][0], to.mean_rate[i] = out[RATE + i][1];
-    to.turning[i] = out[RATE + i][2];
-  }
-  to.gyroscope = gyroscope;
-  to.place = {out[SOLE_POSITION][0], out[SOLE_POSITION + 1][0], out[HEADING][0]};
 }
 
 }  // namespace plantar

@@ -9,13 +9,10 @@
 #include "online/contradiction.hpp"
 #include "online/delay_watch.hpp"
 #include "online/foot_tracker.hpp"
+#include "online/path_bundles.hpp"
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
-
-// Columns of the kinematics: this tick, half a period before, the gyroscope alone, and that again: whole vectors are
-// read at once.
-constexpr int TICKS = 4;
 
 struct FootEstimator::State {
   explicit State(const EstimatorModel& given);
@@ -25,7 +22,6 @@ struct FootEstimator::State {
   Time keep_time(double now) noexcept;
   bool imu(const Reading& reading) noexcept;
   void joints(const Reading& reading) noexcept;
-  void kinematics(std::size_t foot) noexcept;
   void miss_all(std::uint32_t reason) noexcept;
   void watch_ground() noexcept;
   bool weight_differs(double total) noexcept;
@@ -33,17 +29,16 @@ struct FootEstimator::State {
 
   const EstimatorModel model;
   const double weight;
-  const Kernels& kernels;
   WeightWatch weight_watch;
   TurnWatch turn_watch;
   bool turns_differ = false;
   DelayWatch delay_watch;                    // of all feet together, for which one delay was told
   DelayWatch imu_watch;                      // of the one IMU
   std::vector<DelayWatch> foot_delay_watch;  // of each alone
-  std::vector<std::vector<ChainStep>> steps;
+  PathBundles paths;
   std::vector<int> moving;  // joints on the path of a foot: no other says anything of it
   std::vector<FootTracker> feet;
-  std::vector<double> position, velocity, last_position;
+  std::vector<double> last_position;
   std::vector<JointWatch> joint_watch;
   std::vector<std::uint32_t> joint_bad;
   std::vector<bool> joint_dead;
@@ -54,9 +49,7 @@ struct FootEstimator::State {
   AttitudeFilter filter;
   SlipGate slip;
   bool gyroscope = false;
-  double quaternion[4][TICKS] = {}, angular_velocity[3][TICKS] = {};
   double last_quaternion[4] = {1.0, 0.0, 0.0, 0.0}, last_rate[3] = {};
-  double out[CHAIN_OUTPUTS][TICKS] = {};
   std::vector<FootKinematics> motion;
   std::vector<std::uint32_t> bad;
   std::vector<bool> was_bad;

@@ -53,12 +53,10 @@ std::vector<int> twins(const EstimatorModel& model) {
 FootEstimator::State::State(const EstimatorModel& given)
     : model(given),
       weight(checked_weight(given)),
-      kernels(**runnable_kernels()),
       weight_watch(weight),
       foot_delay_watch(given.feet.size()),
+      paths(given, **runnable_kernels()),
       moving(on_paths(given)),
-      position(TICKS * given.joints.size()),
-      velocity(TICKS * given.joints.size()),
       last_position(given.joints.size()),
       joint_watch(given.joints.size()),
       joint_bad(given.joints.size()),
@@ -69,16 +67,7 @@ FootEstimator::State::State(const EstimatorModel& given)
       bad(given.feet.size()),
       was_bad(given.feet.size(), true),
       estimates(given.feet.size()) {
-  for (const FootModel& foot : model.feet) {
-    std::vector<ChainStep>& chain = steps.emplace_back();
-    for (const PathJoint& joint : foot.path)
-      chain.push_back({joint.frame,
-                       joint.slides,
-                       joint.sign,
-                       {position.data() + TICKS * joint.joint, 1},
-                       {velocity.data() + TICKS * joint.joint, 1}});
-    feet.emplace_back(model, foot);
-  }
+  for (const FootModel& foot : model.feet) feet.emplace_back(model, foot);
   for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
 }
 
@@ -141,6 +130,7 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
                       (reading.angular_velocity.size() == 3 && gyroscope_watch.frozen(reading.angular_velocity, dt));
   joints(reading);
   if (!imu(reading)) return miss_all(INPUT_MISSING);
+  paths.run();
   double total = 0.0;
   for (std::size_t f = 0; f < feet.size(); ++f) {
     bad[f] = frozen ? FROZEN : 0u;
@@ -154,7 +144,8 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
       if (!joint.slides && std::abs(reading.position[joint.joint]) > WHOLE_TURN) bad[f] |= INPUT_MISSING;
     }
     if (bad[f] & INPUT_MISSING) continue;
-    kinematics(f);
+    paths.read(f, motion[f]);
+    motion[f].gyroscope = gyroscope;
     feet[f].read(motion[f], reading.wrench[f]);
     total += feet[f].load();
   }

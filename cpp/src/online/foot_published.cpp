@@ -18,6 +18,9 @@ constexpr double UNMODELLED = 0.07;  // of a learnt compliance: what the model l
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
 
+// Deviations of independent causes; none comes near the ends of a double's range.
+double together(double a, double b, double c = 0.0) noexcept { return std::sqrt(a * a + b * b + c * c); }
+
 }  // namespace
 
 void FootTracker::publish(int axis) noexcept {
@@ -27,9 +30,9 @@ void FootTracker::publish(int axis) noexcept {
   const double quantile = QUANTILE[std::clamp(found.groups - 1, 2, 11) - 2];
   const auto parameter = [&](Unknown unknown, double systematic) {
     const double rows = std::max(quantile * found.grouped[unknown], NORMAL * found.white[unknown]);
-    const double beside = std::hypot(found.moved[unknown], systematic);
-    return Parameter{found.value[unknown], std::hypot(found.std[unknown], beside),
-                     std::hypot(rows, NORMAL * found.told[unknown], NORMAL * beside)};
+    const double beside = together(found.moved[unknown], systematic);
+    return Parameter{found.value[unknown], together(found.std[unknown], beside),
+                     together(rows, NORMAL * found.told[unknown], NORMAL * beside)};
   };
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K; where
   // an element does not slip, it is as stiff as K and more.
@@ -37,9 +40,9 @@ void FootTracker::publish(int axis) noexcept {
   const auto half_of = [&](const Untold& one) { return std::max(quantile * one.grouped, NORMAL * one.white); };
   const double late_half = half_of(found.late), turned_half = half_of(found.turned);
   const double surely = has_element(*foot_, axis) ? 0.0 : std::max(std::abs(found.late.value) - late_half, 0.0);
-  const double late = std::hypot(delay_std_, SKEW * period_, surely);
-  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * found.by_late[STIFFNESS]));
-  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * found.by_late[DAMPING]));
+  const double late = together(delay_std_, SKEW * period_, surely);
+  out.stiffness = parameter(STIFFNESS, together(gain_std_ * k, late * found.by_late[STIFFNESS]));
+  out.damping = parameter(DAMPING, together(gain_std_ * c, late * found.by_late[DAMPING]));
   out.slip_torque =
       has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
@@ -76,9 +79,9 @@ void FootTracker::publish_compliance() noexcept {
   const auto mean = [share](double pitch, double roll) { return share * pitch + (1.0 - share) * roll; };
   const double value = mean(p.value, r.value);
   const double apart = std::sqrt(mean((p.value - value) * (p.value - value), (r.value - value) * (r.value - value)));
-  const double beside = std::hypot(apart, UNMODELLED * value);
-  estimate_.compliance = {foot_->compliance + value, std::hypot(std::min(p.std, r.std), beside),
-                          std::hypot(std::min(p.half_width, r.half_width), NORMAL * beside)};
+  const double beside = together(apart, UNMODELLED * value);
+  estimate_.compliance = {foot_->compliance + value, together(std::min(p.std, r.std), beside),
+                          together(std::min(p.half_width, r.half_width), NORMAL * beside)};
 }
 
 }  // namespace plantar

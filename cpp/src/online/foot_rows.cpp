@@ -27,9 +27,10 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
                                      estimate_.roll.torque};
   const bool stands = estimate_.contact == ContactState::stance;
   Middle next = {time, dt, stands, stands && (estimate_.flags & EDGE), flat_ && estimate_.contact == ContactState::landing};
+  const double ticks = dt > 0.0 ? 1.0 / dt : 0.0;  // in a second
   for (int i = 0; i < 5; ++i) next.forces[i] = 0.5 * (now[i] + before_[i]);
   for (int a = 0; a < 2; ++a) {
-    next.forces[5 + a] = dt > 0.0 ? (now[3 + a] - before_[3 + a]) / dt : 0.0;
+    next.forces[5 + a] = (now[3 + a] - before_[3 + a]) * ticks;
     next.angles[a] = motion.mean_angle[a], next.angles[2 + a] = motion.mean_rate[a];
     next.angles[6 + a] = 0.5 * (motion.turning[a] + turning_before_[a]);
     turning_before_[a] = motion.turning[a];
@@ -40,7 +41,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   Middle row = last_;
   for (int a = 0; a < 2; ++a) {
     const auto twelfth = [&](const double (Middle::*rate)[2]) {
-      return ((next.*rate)[a] - 2.0 * (last_.*rate)[a] + (before_last_.*rate)[a]) / 12.0;
+      return ((next.*rate)[a] - 2.0 * (last_.*rate)[a] + (before_last_.*rate)[a]) * (1.0 / 12.0);
     };
     row.mean_rate[a] = row.angles[2 + a] - twelfth(&Middle::of_ends);
     row.angles[2 + a] += twelfth(&Middle::difference);

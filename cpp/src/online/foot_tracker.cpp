@@ -25,13 +25,6 @@ constexpr double CHANGE_TOLD = 5.0;  // s for which the flag of a change stands
 constexpr std::uint32_t OF_LEARNING = NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY |
                                       PITCH_UNTESTED | ROLL_UNTESTED;  // they outlast a tick
 
-double outline_middle_depth(const FootModel& foot) noexcept {
-  Point middle = {0.0, 0.0};
-  for (const Point& corner : foot.polygon)
-    for (int i = 0; i < 2; ++i) middle[i] += corner[i] / static_cast<double>(foot.polygon.size());
-  return depth(foot.polygon, middle);
-}
-
 RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis, double slip) noexcept {
   const double w = model.weight;
   const bool known = has_element(foot, axis);
@@ -60,11 +53,12 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
 
 }  // namespace
 
-FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noexcept
+FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot)
     : foot_(&foot),
       weight_(model.weight),
       least_load_(LEAST_LOAD * model.weight),
-      middle_depth_(outline_middle_depth(foot)),
+      outline_(foot.polygon),
+      middle_depth_(outline_.middle_depth()),
       delay_(model.wrench_delay),
       cutoff_(model.cutoff),
       noise_(model.cutoff),
@@ -89,15 +83,15 @@ void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>
   std::array<double, 6> zeroed;
   for (int i = 0; i < 6; ++i) zeroed[i] = raw[i] - zero_.value()[i];
   wrench_ = moved_wrench(foot_->sensor, foot_->sign, zeroed.data());
-  const double pitch = motion.angle[0], roll = motion.angle[1];
+  const Bend bend(motion.up);
   estimate_.load = motion.up[0] * wrench_[0] + motion.up[1] * wrench_[1] + motion.up[2] * wrench_[2];
-  estimate_.pitch.deflection = pitch, estimate_.roll.deflection = roll;
+  estimate_.pitch.deflection = motion.angle[0], estimate_.roll.deflection = motion.angle[1];
   estimate_.pitch.rate = motion.rate[0], estimate_.roll.rate = motion.rate[1];
   // The loaded slide carries the bush's centre up by z. The roll axis turns with the pitch: Ry(pitch) e_x.
   const double z = foot_->compliance * wrench_[2];
   estimate_.compression = estimate_.compliance.value * wrench_[2];
   const double about_pitch = wrench_[4] - z * wrench_[0];
-  const double about_roll = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
+  const double about_roll = bend.cos_pitch * (wrench_[3] + z * wrench_[1]) - bend.sin_pitch * wrench_[5];
   const auto& [of_pitch, of_roll] = foot_->misplaced;
   const auto told = [&](const Misplaced& is, double across, double other) {
     return is.aside * wrench_[2] + is.above * across + is.turned * other + is.leans * wrench_[5];
@@ -105,7 +99,7 @@ void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>
   estimate_.pitch.torque = about_pitch - told(of_pitch, wrench_[0], about_roll);
   estimate_.roll.torque = about_roll - told(of_roll, -wrench_[1], about_pitch);
   Point centre;
-  if (centre_of_pressure(wrench_, pitch, roll, foot_->sole, least_load_, centre)) estimate_.centre_of_pressure = centre;
+  if (centre_of_pressure(wrench_, bend, foot_->sole, least_load_, centre)) estimate_.centre_of_pressure = centre;
 }
 
 void FootTracker::close_blocks() noexcept {
@@ -130,7 +124,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
                  motion.gyroscope},
                 dt, period);
   const ContactState before = gate_.contact();
-  const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
+  const double inside = outline_.depth(estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
   const bool steep = std::max(std::abs(motion.angle[0]), std::abs(motion.angle[1])) > STEEPEST ||
                      std::max(std::abs(motion.rate[0]), std::abs(motion.rate[1])) > FASTEST;

@@ -13,6 +13,7 @@
 #include "online/delay_watch.hpp"
 #include "online/edge_watch.hpp"
 #include "online/element_state.hpp"
+#include "online/foot_kinematics.hpp"
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
 #include "online/shaking.hpp"
@@ -27,21 +28,9 @@ constexpr double STIFFEST = 100.0;  // m, times the weight: stiffness before any
 
 inline bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
 
-// What the kinematics say of one foot at one tick.
-struct FootKinematics {
-  double up[3];          // the world's up in the bush frame
-  double angle[2];       // pitch, roll [rad]
-  double rate[2];        // [rad/s], of the tick, for the controller
-  double mean_angle[2];  // half a period before: there the joints' differences are exact
-  double mean_rate[2];
-  double turning[2];  // what the gyroscope alone adds to the rates [rad/s]
-  bool gyroscope;     // else rates come from the attitude
-  SolePlace place;
-};
-
 class FootTracker {
  public:
-  FootTracker(const EstimatorModel& model, const FootModel& foot) noexcept;
+  FootTracker(const EstimatorModel& model, const FootModel& foot);
 
   // The wrench at the bush, the load and the centre of pressure of this tick.
   void read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept;
@@ -113,7 +102,9 @@ class FootTracker {
   void publish_compliance() noexcept;
 
   const FootModel* foot_;
-  double weight_, least_load_, middle_depth_, delay_, cutoff_;
+  double weight_, least_load_;
+  Outline outline_;
+  double middle_depth_, delay_, cutoff_;
   FootNoise noise_;
   double gain_std_, delay_std_;
   double period_ = 0.0;

@@ -8,21 +8,21 @@ namespace plantar {
 class RunningQuantile {
  public:
   // share: of the time that the signal is below; time: in which the value may follow by its own size [s].
-  RunningQuantile(double share, double time) noexcept : share_(share), time_(time) {}
+  RunningQuantile(double share, double time) noexcept : share_(share), rate_(1.0 / time) {}
 
   void see(double size, double dt) noexcept {
     if (value_ <= 0.0) {
       value_ = size;
       return;
     }
-    const double step = std::min(dt / time_, 0.5);
+    const double step = std::min(dt * rate_, 0.5);
     value_ *= 1.0 + step * (size > value_ ? share_ : share_ - 1.0);
   }
 
   double value() const noexcept { return value_; }
 
  private:
-  double share_, time_, value_ = 0.0;
+  double share_, rate_, value_ = 0.0;
 };
 
 }  // namespace plantar

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "online/one_pole.hpp"
 #include "online/running_quantile.hpp"
 
 namespace plantar {
@@ -23,7 +23,7 @@ class Shaking {
 
   // force: (3) [N]; whether an impact is going on or was just now.
   bool step(const double* force, double dt) noexcept {
-    const double blend = 1.0 - std::exp(-2 * std::numbers::pi * std::min(SHAKING_BAND * dt, SHAKING_RATE));
+    const double blend = followed_in_band(1.0, std::min(SHAKING_BAND * dt, SHAKING_RATE));
     double quick = 0.0;
     for (int i = 0; i < 3; ++i) {
       // Two poles: what is slow passes without being late by much of itself.
@@ -33,7 +33,7 @@ class Shaking {
       quick += rest * rest;
     }
     first_ = false;
-    square_ += (1.0 - std::exp(-dt / SHAKING_TIME)) * (quick - square_);
+    square_ += followed_after(dt / SHAKING_TIME) * (quick - square_);
     const double size = std::sqrt(square_);
     calm_.see(size, dt);
     since_ = size > std::max(SHAKING_SHARE * weight_, SHAKING_NOISE * calm_.value()) ? 0.0 : since_ + dt;

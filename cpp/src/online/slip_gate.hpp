@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "online/foot_kinematics.hpp"
+#include "online/one_pole.hpp"
 #include "online/running_quantile.hpp"
 
 namespace plantar {
@@ -20,11 +22,6 @@ constexpr double POSSIBLE = 3.5;        // deviations: part of a slide
 constexpr double LEAST_PATH = 0.0009;   // m that a slide must cover
 constexpr double SLIP_PAUSE = 0.1;      // s: slides that are closer are one
 
-struct SolePlace {
-  double x, y;     // from the IMU, world axes [m]
-  double heading;  // [rad]
-};
-
 class SlipGate {
  public:
   enum class Verdict { none, possible, sure };
@@ -34,9 +31,9 @@ class SlipGate {
   Verdict step(const SolePlace& left, const SolePlace& right, double dt) noexcept {
     const double c = std::cos(left.heading), s = std::sin(left.heading);
     const double x = right.x - left.x, y = right.y - left.y, yaw = right.heading - left.heading;
-    const double turned = std::atan2(std::sin(yaw), std::cos(yaw));
+    const double turned = std::abs(yaw) > std::numbers::pi ? yaw - std::copysign(2.0 * std::numbers::pi, yaw) : yaw;
     const std::array<double, 3> apart = {c * x + s * y, c * y - s * x, YAW_MOMENT_ARM * turned};
-    const double blend = 1.0 - std::exp(-2 * std::numbers::pi * SLIP_CUTOFF * dt);
+    const double blend = followed_in_band(SLIP_CUTOFF, dt);
     double square = 0.0;
     for (int i = 0; i < 3; ++i) {
       const double before = twice_[i];

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "online/one_pole.hpp"
+
 namespace plantar {
 
 constexpr double ANGLE_BAND = 2.5;  // Hz: above it the gyroscope's noise is the smaller one, as in `identify feet`
@@ -23,7 +25,7 @@ class SmoothAngle {
 
   // angle [rad] and rate [rad/s] of the same instant, `dt` behind the last ones.
   double pass(double angle, double rate, double dt) noexcept {
-    const double blend = 1.0 - std::exp(-2.0 * std::numbers::pi * ANGLE_BAND * dt);
+    const double blend = followed_in_band(ANGLE_BAND, dt);
     const double expected = angle_ + 0.5 * (rate + rate_) * dt;
     angle_ = known_ ? expected + blend * (angle - expected) : angle;
     rate_ = rate, known_ = true;

@@ -1,6 +1,7 @@
 // Where the ground's force passes through the sole, and how deep inside its outline.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -34,13 +35,24 @@ inline std::array<double, 6> moved_wrench(const Frame& sensor, double sign, cons
   return out;
 }
 
+// Pitch and roll of a flat sole against its ankle.
+struct Bend {
+  double cos_pitch, sin_pitch, cos_roll, sin_roll;
+
+  // up: the world's, in the bush frame, of length 1.
+  explicit Bend(const double* up) noexcept {
+    const double level = std::sqrt(up[0] * up[0] + up[2] * up[2]), over = 1.0 / std::max(level, 1e-12);
+    cos_pitch = up[2] * over, sin_pitch = up[0] * over, cos_roll = level, sin_roll = -up[1];
+  }
+};
+
 // Of a wrench at the bush's centre, in the sole's plane; false where the force along its normal is below `least`.
-inline bool centre_of_pressure(const std::array<double, 6>& wrench, double pitch, double roll, const Frame& sole,
-                               double least, Point& centre) noexcept {
-  const double cp = std::cos(pitch), sp = std::sin(pitch), cr = std::cos(roll), sr = std::sin(roll);
+inline bool centre_of_pressure(const std::array<double, 6>& wrench, const Bend& bend, const Frame& sole, double least,
+                               Point& centre) noexcept {
   const auto onto_sole = [&](const double* v) {
-    const double level = sp * v[0] + cp * v[2];
-    return Vector3{cp * v[0] - sp * v[2], cr * v[1] + sr * level, cr * level - sr * v[1]};
+    const double level = bend.sin_pitch * v[0] + bend.cos_pitch * v[2];
+    return Vector3{bend.cos_pitch * v[0] - bend.sin_pitch * v[2], bend.cos_roll * v[1] + bend.sin_roll * level,
+                   bend.cos_roll * level - bend.sin_roll * v[1]};
   };
   const Vector3 force = onto_sole(wrench.data()), torque = onto_sole(wrench.data() + 3);
   const Vector3 arm = cross(sole.origin, force.data());
@@ -52,15 +64,33 @@ inline bool centre_of_pressure(const std::array<double, 6>& wrench, double pitch
   return true;
 }
 
-// Distance of a point from the border of a convex outline, counter-clockwise; negative outside.
-inline double depth(const std::vector<Point>& outline, const Point& at) noexcept {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Point &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    const double x = b[0] - a[0], y = b[1] - a[1];
-    least = std::min(least, (x * (at[1] - a[1]) - y * (at[0] - a[0])) / std::sqrt(x * x + y * y));
+// A convex outline, its corners counter-clockwise.
+class Outline {
+ public:
+  explicit Outline(const std::vector<Point>& corners) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Point &a = corners[i], &b = corners[(i + 1) % corners.size()];
+      const double x = b[0] - a[0], y = b[1] - a[1], length = std::sqrt(x * x + y * y);
+      sides_.push_back({-y / length, x / length, (y * a[0] - x * a[1]) / length});
+      for (int k = 0; k < 2; ++k) middle_[k] += a[k] / static_cast<double>(corners.size());
+    }
   }
-  return least;
-}
+
+  // Distance of a point from the border; negative outside.
+  double depth(const Point& at) const noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Side& side : sides_) least = std::min(least, side.x * at[0] + side.y * at[1] + side.inside);
+    return least;
+  }
+  double middle_depth() const noexcept { return depth(middle_); }
+
+ private:
+  struct Side {
+    double x, y;    // its normal, inwards
+    double inside;  // the distance of the origin
+  };
+  std::vector<Side> sides_;
+  Point middle_ = {0.0, 0.0};
+};
 
 }  // namespace plantar

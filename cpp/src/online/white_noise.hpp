@@ -22,8 +22,8 @@ class WhiteNoise {
   }
 
   double variance() const noexcept {
-    const double deviation = median_.value() / 0.6745;  // of normal noise, from the median of its size
-    return deviation * deviation / 70.0;                // 1 + 16 + 36 + 16 + 1
+    const double deviation = median_.value() * (1.0 / 0.6745);  // of normal noise, from the median of its size
+    return deviation * deviation * (1.0 / 70.0);                // 1 + 16 + 36 + 16 + 1
   }
 
  private:
