@@ -124,7 +124,7 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, world: Physics
     truth = _recorded(factor, robot, rollout, world, 0).truth.columns
     margins, standing = (np.full(2, np.inf) for _ in range(2))
     load, friction, bend = np.inf, 0.0, 0.0
-    yields = {}
+    yields = dict[tuple[str, str], float]()
     weight = robot.mass * GRAVITY / len(robot.feet)
     for name, foot in robot.feet.items():
         pressure = np.column_stack([truth[f"{name}.contact.cop.{axis}"] for axis in "xy"])
