@@ -74,20 +74,37 @@ def pulled_to_accelerometer(rate: float) -> Change:
 def loose(angle: float, axis: int) -> Change:
     """An IMU that turns to and fro in its mount, by an angle [rad] about one of its axes, every few seconds."""
 
+    def turn(table: Table, _: str) -> Array:
+        time = table["time"]
+        side = np.sign(np.sin(2 * np.pi * 0.21 * time) + np.sin(2 * np.pi * 0.083 * time + 1))
+        return first_order(angle / 2 * side, 0.4)
+
+    return _turning(turn, axis)
+
+
+def on_soft_mount(tilt: float) -> Change:
+    """An IMU whose mount lets it tilt about its y axis by so much [rad] for each m/s² along x."""
+
+    def turn(table: Table, begin: str) -> Array:
+        padded = np.pad(table[f"{begin}.linear_acceleration.x"], 10, mode="edge")
+        return tilt * np.convolve(padded, np.full(21, 1 / 21), mode="valid")
+
+    return _turning(turn, 1)
+
+
+def _turning(turn: Callable[[Table, str], Array], axis: int) -> Change:
+    """An IMU that turns in its mount about one of its axes: `turn` (N,) [rad] of a table and the IMU's prefix."""
+
     def change(case: Case) -> Case:
         begin = f"imu.{case.robot['imu']['name']}"
 
         def each(table: Table) -> Table:
-            time, rate = table["time"], f"{begin}.angular_velocity.{'xyz'[axis]}"
-            side = np.sign(np.sin(2 * np.pi * 0.21 * time) + np.sin(2 * np.pi * 0.083 * time + 1))
-            turn = first_order(angle / 2 * side, 0.4)
+            turned, rate = turn(table, begin), f"{begin}.angular_velocity.{'xyz'[axis]}"
             q = np.column_stack([table[f"{begin}.orientation.{each}"] for each in "wxyz"])
             about = rotation_from_quaternion(q)[:, :, axis]
-            turned = _turned_in_world(np.sin(turn / 2)[:, None] * about, q)
-            orientation = {
-                f"{begin}.orientation.{each}": own for each, own in zip("wxyz", turned.T, strict=True)
-            }
-            return {**table, **orientation, rate: table[rate] + np.gradient(turn, time)}
+            q = _turned_in_world(np.sin(turned / 2)[:, None] * about, q)
+            orientation = {f"{begin}.orientation.{each}": own for each, own in zip("wxyz", q.T, strict=True)}
+            return {**table, **orientation, rate: table[rate] + np.gradient(turned, table["time"])}
 
         return case.with_tables(each)
 

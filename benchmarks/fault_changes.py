@@ -159,6 +159,11 @@ def clipped(columns: Columns, share: float) -> Change:
     return by_largest(columns, lambda values, most: np.clip(values, -share * most, share * most))
 
 
+def bent(columns: Columns, share: float) -> Change:
+    """Columns whose largest reading is too small by a share, as of an amplifier that bends."""
+    return by_largest(columns, lambda values, most: values * (1 - share * (values / most) ** 2))
+
+
 def in_steps(columns: Columns, share: float) -> Change:
     """Columns in steps of a share of their largest reading, as of a coarse converter."""
     return by_largest(columns, lambda values, most: share * most * np.round(values / (share * most)))

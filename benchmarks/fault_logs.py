@@ -6,10 +6,11 @@ from itertools import product
 
 import numpy as np
 
-from fault_attitudes import gyroscope_in_world, loose, pulled_to_accelerometer, reoriented
+from fault_attitudes import gyroscope_in_world, loose, on_soft_mount, pulled_to_accelerometer, reoriented
 from fault_case import Columns, Fault, encoder, encoders, imu, wrench
 from fault_changes import (
     altered,
+    bent,
     clipped,
     dead_below,
     drifting_clock,
@@ -185,6 +186,7 @@ SATURATION = (
     Fault("forces z clipped at 80 %", "saturation", clipped(wrench(quantity=r"force\.z"), 0.8), STUCK),
     Fault("left force z clipped at 50 %", "saturation", clipped(wrench("left", quantity=r"force\.z"), 0.5), STUCK),
     Fault("gyroscope clipped at 30 %", "saturation", clipped(GYROSCOPE, 0.3), STUCK),
+    Fault("torques bend by 10 %", "saturation", bent(TORQUES, 0.1), (*STUCK, "bend")),
     Fault("torques dead below 3 %", "saturation", dead_below(TORQUES, 0.03), (*STUCK, "dead band")),
     Fault("torques in steps of 1.5 %", "saturation", in_steps(TORQUES, 0.015), (*STUCK, "steps")),
     Fault("torques with 1 % hysteresis", "saturation", with_hysteresis(TORQUES, 0.01), ("hysteresis", *DELAY)),
@@ -219,6 +221,7 @@ FREEZING = (
       for size in (0.4, 1.5)),
     *(Fault(f"IMU loose by 5 mrad about {name}", "freezing", loose(0.005, axis), ("jumps", "loose"))
       for axis, name in enumerate("xy")),
+    Fault("IMU on a soft mount, 2 mrad for each m/s²", "freezing", on_soft_mount(0.002), ("mount",)),
     *(Fault(f"left {name} stuck, velocity goes on", "freezing",
             overwritten(encoder("left", place=place, quantity="position"), 0, 1), STUCK) for name, place in ENCODERS),
 )  # fmt: skip

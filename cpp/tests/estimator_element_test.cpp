@@ -35,9 +35,10 @@ EstimatorModel model(bool always, double told_std) {
 }
 
 // `angle(t)` and `load(t)` of the left foot, sampled at `rate_hz` for `seconds`; what is known of its pitch at the end.
+// missing: from when to when its force sensor says nothing.
 template <class Angle, class Load>
 FootEstimate after(double seconds, double rate_hz, bool always, double first_state, Angle angle, Load load,
-                   double told_std = 1e-6, double torque_noise = 0.0) {
+                   double told_std = 1e-6, double torque_noise = 0.0, std::array<double, 2> missing = {}) {
   FootEstimator estimator(model(always, told_std));
   std::mt19937 random(0);
   std::normal_distribution<double> normal;
@@ -54,8 +55,9 @@ FootEstimate after(double seconds, double rate_hz, bool always, double first_sta
     const double torque =
         stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
     const double attitude[4] = {std::cos(p / 2), noise, -std::sin(p / 2), noise}, gyroscope[3] = {noise, -rate, noise};
-    const std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
+    std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
                                              {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};
+    if (t >= missing[0] && t < missing[1]) wrench[0].fill(std::nan(""));
     last = estimator.step({t, {&position, 1}, {}, attitude, gyroscope, {}, wrench})[0];
   }
   return last;
@@ -108,9 +110,19 @@ void is_known_from_the_first_landing_on() {
   check::near(found.pitch.damping.value, DAMPING, 1e-3 * DAMPING, "damping from the first steps");
 }
 
+// The foot stands on while its sensor says nothing: its element is where nobody knows, not where a lift would leave it.
+void a_pause_is_no_lift() {
+  const auto swings = [](double t) { return t < 42.0 ? 0.02 * std::sin(2.0 * t) : 0.006 * std::sin(2.0 * t); };
+  const FootEstimate found =
+      after(52.0, 200.0, false, 0.0, swings, all, 0.02 * SLIP_TORQUE, 0.02, std::array<double, 2>{40.0, 42.0});
+  check::that((found.flags & GROUND_CHANGED) == 0, "no other ground behind a pause");
+  check::near(found.pitch.stiffness.value, STIFFNESS, 0.01 * STIFFNESS, "stiffness behind a pause");
+}
+
 }  // namespace
 
 int main() {
+  a_pause_is_no_lift();
   follows_what_turns_between_samples();
   knows_nothing_of_a_foot_that_always_stands();
   is_known_from_the_first_landing_on();

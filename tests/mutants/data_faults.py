@@ -46,14 +46,60 @@ DATA_FAULTS = (
         ("feet/assess/test_play.py",),
     ),
     Mutant(
-        "feet/assess/play.py", "encoders that are late have play",
-        "if late.squares < play.squares or", "if late.squares < 0.0 or",
-        ("feet/assess/test_play.py",),
+        "feet/place/misread_joints.py", "what is wrong with a joint is told by the worst",
+        "key=lambda one: one.squares", "key=lambda one: -one.squares",
+        ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
-        "feet/assess/play.py", "play that moves no number is told",
-        " or wide.holds(play.values[:2] - found.values[:2])", "",
-        ("feet/assess/test_play.py",),
+        "signals/slow_cosines.py", "the quickest of the slow cosines stays", "slowest * len(rows) * period) + 1",
+        "slowest * len(rows) * period)", ("signals/test_slow_cosines.py",),
+    ),
+    Mutant(
+        "signals/slow_cosines.py", "a constant stays in long signals", "spectrum[:, :count] = 0.0",
+        "spectrum[:, 1:count] = 0.0", ("signals/test_slow_cosines.py",),
+    ),
+    Mutant(
+        "estimation/errors_in_variables.py", "all that stances leave is slow",
+        "along = solution.squares - sum(", "along = solution.squares - 0.0 * sum(",
+        ("feet/interval_width/test_systematic.py",),
+    ),
+    Mutant(
+        "estimation/errors_in_variables.py", "an attitude keeps its angle through a stance",
+        "len(rows))[:, None] ** np.arange(3)", "len(rows))[:, None] ** np.arange(1)",
+        ("feet/interval_width/test_systematic.py",),
+    ),
+    Mutant(
+        "feet/interval_width/systematic.py", "rubber that hardens is a sensor that bends",
+        "if fit.values[bends] >= 0:", "if fit.values[bends] == 0:",
+        ("feet/interval_width/test_systematic.py",),
+    ),
+    Mutant(
+        "feet/interval_width/systematic.py", "the bend is the rubber's whatever the slope is",
+        "less * fit.values[1], fit.values[bends]", "less * fit.values[1], 0.0",
+        ("feet/interval_width/test_systematic.py",),
+    ),
+    Mutant(
+        "estimation/delays/sensor_delays.py", "cells of a log miss each by themselves",
+        "middle += total.T @ total", "middle += sum(scores.T @ scores for scores in own)",
+        ("estimation/delays/test_sensor_delays.py",),
+    ),
+    Mutant(
+        "sensors/delays/refined_delays.py", "delays that come and go are as sure as others",
+        "np.diag(own.covariance + own.through_time(balances))", "np.diag(own.covariance)",
+        ("estimation/delays/test_sensor_delays.py",),
+    ),
+    Mutant(
+        "feet/put_right/encoders_of_fits.py", "a law that misses a little is believed",
+        "return MISSED_BY_LAW *", "return 0.0 *", ("feet/put_right/test_encoders_of_fits.py",),
+    ),
+    Mutant(
+        "feet/assess/zero_jumps.py", "pieces have no levels of their own",
+        "about = products - sums.T @ (sums / counts)", "about = products",
+        ("feet/assess/test_zero_jumps.py",),
+    ),
+    Mutant(
+        "feet/place/misread_joints.py", "a soft mount tilts about what pulls at it",
+        "cross(up, acceleration)", "acceleration", ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
         "feet/place/misread_joints.py", "a joint that is late is early",
@@ -72,8 +118,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/place/misread_joints.py", "any joint that explains a little is misread",
-        'alone.squares < (BETTER_TURNING if found[0].kind == "play" else BETTER) * found[0].squares',
-        "alone.squares < 0.0",
+        "BETTER, BETTER_TURNING = 1.5, 1.3", "BETTER, BETTER_TURNING = 0.0, 0.0",
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(

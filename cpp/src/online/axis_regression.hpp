@@ -113,6 +113,8 @@ class AxisRegression {
   // Whether the last rows are those of no bush on no ground: they are thrown away with their block.
   bool doubted() const noexcept { return watch_.doubted(); }
   void forget_suspicion() noexcept { watch_.forget(); }
+  // The rows of the open block come from a reading that was wrong.
+  void discard() noexcept { watch_.forget(), open_block(); }
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
   // One piece of the work that keeps `values` current, each short enough for one tick.

@@ -21,6 +21,7 @@ constexpr double BEYOND_USUAL = 2.0;    // times the longest way of others durin
 constexpr double TWIN_MOVED = 0.02;  // rad or m that the other leg's joint has moved, while this one never did by a bit
 constexpr double LEAST_WAY = 0.002;  // rad or m: less is noise of an encoder, and so are
 constexpr double FLICKER = 3.0;      // steps of it
+constexpr double LEAP = 4.0;         // times the way of the next tick: a joint that sets out does not stop again at once
 
 inline bool all_finite(std::span<const double> values) noexcept {
   for (const double value : values)
@@ -83,10 +84,14 @@ class DeviceWatch {
 class JointWatch {
  public:
   // Time begins anew, perhaps elsewhere. Nobody mends an encoder in between: one that was dead is, until it moves.
-  void restart() noexcept { way_ = passed_ = 0.0, begun_ = false; }
+  void restart() noexcept { way_ = passed_ = leap_ = 0.0, begun_ = leapt_ = false; }
 
   bool frozen(double position, double velocity, double dt) noexcept {
+    const bool stood = repeats_.stuck();
     repeats_.see(position, dt);
+    const double gone_now = begun_ ? std::abs(position - last_) : 0.0;
+    leapt_ = leap_ > std::max(LEAST_WAY, FLICKER * step_) && gone_now < leap_ / LEAP;
+    leap_ = stood ? gone_now : 0.0;
     if (begun_ && position != last_) step_ = std::min(step_, std::abs(position - last_));
     way_ = begun_ && position == last_ ? way_ + std::abs(velocity) * dt : 0.0;
     if (begun_ && position != last_) dead_ = false;
@@ -118,6 +123,8 @@ class JointWatch {
   // Whether it stands while its twin moves twice as far as it ever did before this one moved again: nothing may be
   // wrong, but nothing is learnt from it.
   bool doubtful() const noexcept { return doubtful_; }
+  // Whether it has gone far at the last tick, at once from where it stood, and hardly on since: it had been frozen.
+  bool leapt() const noexcept { return leapt_; }
   // Its way since the first tick, without its noise [rad or m].
   double moved() const noexcept { return moved_; }
 
@@ -127,7 +134,8 @@ class JointWatch {
   double step_ = LARGEST;                    // the smallest change: an encoder's step, or noise
   double twin_then_ = 0.0, leg_then_ = 0.0;  // their ways when this one stood still first
   double passed_ = 0.0, usual_ = 0.0;        // by how much they have moved since; at most, where it moved again
-  bool begun_ = false, dead_ = false, doubtful_ = false;
+  double leap_ = 0.0;                        // of the last tick, where it stood before
+  bool begun_ = false, dead_ = false, doubtful_ = false, leapt_ = false;
   bool silent_ = false;  // it has stood beside its twin without any noise
 };
 

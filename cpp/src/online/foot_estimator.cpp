@@ -141,6 +141,7 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     for (const PathJoint& joint : model.feet[f].path) {
       bad[f] |= joint_bad[joint.joint];
       if (joint_dead[joint.joint]) feet[f].forget();
+      if (joint_watch[joint.joint].leapt()) feet[f].discard(), bad[f] |= FROZEN;
       if (!joint.slides && std::abs(reading.position[joint.joint]) > WHOLE_TURN) bad[f] |= INPUT_MISSING;
     }
     if (bad[f] & INPUT_MISSING) continue;

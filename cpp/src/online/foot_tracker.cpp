@@ -226,6 +226,12 @@ void FootTracker::change_ground() noexcept {
     if (axis.suspicion().softer() + axis.suspicion().stiffer() > 0.0) axis.jump();
 }
 
+void FootTracker::discard() noexcept {
+  for (AxisRegression& axis : axes_) axis.discard();
+  for (MemoryWatch& memory : memories_) memory.discard();
+  lifted_ = false;  // nor is it known how the elements are bent
+}
+
 void FootTracker::forget() noexcept {
   for (AxisRegression& axis : axes_) axis.restart();
   for (MemoryWatch& memory : memories_) memory.restart();
@@ -238,7 +244,8 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   held_count_ = 0;
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
     close_blocks();
-  if (reason & TIME_FAULT) stood_ = lifted_ = false, inside_until_ = std::numeric_limits<double>::lowest();
+  if (reason & TIME_FAULT) lifted_ = false, inside_until_ = std::numeric_limits<double>::lowest();
+  stood_ = false;  // contact begins anew: that is no lift
   begun_elements_ = lifted_;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart(), edge_.restart();

@@ -45,6 +45,8 @@ class FootTracker {
   // earlier.
   void learn(const FootKinematics& motion, double others, Doubt doubt, bool fresh, double time, double dt,
              double period) noexcept;
+  // What was learnt last came from a reading that was wrong.
+  void discard() noexcept;
   // What was learnt came from a reading that was wrong from the beginning.
   void forget() noexcept;
   // A tick without readings that can be used, for `reason`.

@@ -32,6 +32,7 @@ class MemoryWatch {
     way_ = std::max(way_, high_ - low_);
   }
   void close() noexcept { regression_.close(), begun_ = false; }
+  void discard() noexcept { regression_.discard(), begun_ = false; }
   void restart() noexcept { regression_.restart(), seen_ = excluded_ = begun_ = false, way_ = 0.0; }
   void set_spread(Unknown unknown, double spread) noexcept { regression_.set_spread(unknown, spread); }
 

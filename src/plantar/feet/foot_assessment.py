@@ -12,7 +12,7 @@ from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.odd_recordings import odd_recordings, odd_walks
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
-from plantar.feet.assess.play import encoder_play_notes, play_notes
+from plantar.feet.assess.play import play_notes
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.assess.sensor_hysteresis import hysteresis_notes
@@ -37,7 +37,6 @@ from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 from plantar.robot.guesses import naming_notes
-from plantar.robot.model import RobotModel
 from plantar.sensors.attitude_scale import ATTITUDE_SCALE
 from plantar.sensors.moment_balance import torque_gain_notes
 
@@ -101,9 +100,8 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     walks = walk_stiffness(ready.recordings, wide)
     own = [
         *play_notes(thin.fitted, wide, blocks, shared),
-        *encoder_play_notes(ready.fitted, wide, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, wide, blocks, shared),
-        *misread_joint_notes(ready.robot, ready.fitted, wide, blocks),
+        *misread_joint_notes(ready.robot, ready.fitted, wide, blocks, shared),
         *late_recordings(wide, blocks, shared),
         *odd_recordings(wide, blocks, shared),
         *odd_walks(wide, walks, thin.fitted, blocks),
@@ -137,8 +135,3 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         walks=[*found.walks, *walks],
         notes=(*found.notes, *own),
     )
-
-
-def _joints_to(robot: RobotModel, foot: str) -> frozenset[str]:
-    """Names of the joints between IMU and bush."""
-    return robot.joints_between(robot.required_imu.placement, robot.feet[foot].bush)

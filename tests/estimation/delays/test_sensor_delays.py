@@ -27,15 +27,15 @@ PERIOD, SAMPLES = 0.005, 8000
 INNER = slice(100, -100)
 
 
-def late(values: Array, delay: float) -> Array:
-    """Values (n, 6) as a sensor reports them that is late by `delay` [s]."""
+def late(values: Array, delay: float | Array) -> Array:
+    """Values (n, 6) as a sensor reports them that is late by `delay` [s], of each sample if it is (n,)."""
     time: Array = PERIOD * np.arange(len(values), dtype=np.float64)
     return np.nan_to_num(
         np.column_stack([interpolate(time - delay, time, column, 1.0) for column in values.T])
     )
 
 
-def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
+def residual(delays: Sequence[float | Array], seed: int) -> NewtonEulerResidual:
     """Two feet that also push against each other, below 1.5 Hz; half of the motion shows in the encoders alone."""
     *each, encoders = delays
     random = np.random.default_rng(seed)
@@ -84,6 +84,29 @@ def test_bands_that_hold_fewer_values_than_delays_tell_none() -> None:
     assert estimate_delays([part(30.0)]) is not None
 
 
+def at_times(seed: int) -> Array:
+    """1 half of the time, for some seconds, else 0, (n,)."""
+    random = np.random.default_rng(seed + 50)
+    return np.asarray(low_pass(random.standard_normal(SAMPLES), PERIOD, 0.3) > 0, dtype=np.float64)
+
+
+@pytest.mark.parametrize(("amount", "least", "most"), [(0.008, 6e-4, 2e-3), (0.0, 0.0, 1e-4)])
+def test_a_delay_that_comes_and_goes_is_as_unsure_as_its_mean(
+    amount: float, least: float, most: float
+) -> None:
+    """It moves all axes and bands together, which do not disagree then: only how it changes in time tells."""
+    off, wide = list[float](), list[float]()
+    for seed in range(6):
+        busy = at_times(seed)
+        balance = residual([amount * busy, 0.002, 0.0], seed).balance
+        found = estimate_delays([balance], np.eye(3)[2:])
+        assert found is not None
+        off.append(found.values[0] - amount * busy[INNER].mean())
+        wide.append(np.sqrt(found.through_time([balance])[0, 0]))
+    assert least <= np.sqrt(np.mean(np.square(wide))) <= most
+    assert np.sqrt(np.mean(np.square(off))) < max(1.5 * np.sqrt(np.mean(np.square(wide))), 5e-4)
+
+
 def test_what_is_held_is_not_estimated() -> None:
     found = estimate_delays(
         [residual((0.006, 0.006, 0.0), 1).balance], np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
@@ -94,7 +117,7 @@ def test_what_is_held_is_not_estimated() -> None:
     assert found.values[0] == pytest.approx(0.006, abs=5e-4)
 
 
-def sensor_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *delays: float) -> SensorDelay:
+def sensor_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *delays: float | Array) -> SensorDelay:
     """Of two recordings whose residuals are those of `residual`, less what has been corrected when they are asked."""
     robot, time = make_robot(tmp_path), PERIOD * np.arange(SAMPLES)
     ramps = dict.fromkeys(
@@ -143,6 +166,17 @@ def test_feet_that_differ_and_encoders_that_lag_are_told(
     assert list(lagging.feet.values()) == pytest.approx([0.0, 0.0], abs=5e-4)
     assert lagging.encoders == pytest.approx(0.006, abs=7e-4)
     assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text
+
+
+def test_a_foot_that_is_late_at_times_is_told_with_how_unsure_its_delay_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steady, at_random = (
+        sensor_delay(tmp_path, monkeypatch, 0.012 + amount * (at_times(3) - 0.5), 0.0, 0.0)
+        for amount in (0.0, 0.012)
+    )
+    assert steady.note.code == at_random.note.code == "delays_apart"
+    assert 2 * steady.std < at_random.std
 
 
 def test_a_log_is_put_in_time(tmp_path: Path) -> None:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
-from feet_trials import LINEAR, noisy, stepping
+from feet_trials import LINEAR, codes, noisy, stepping, without
 from plantar.feet.identify import identify_feet
 from plantar.feet.place.misread_joints import MISREAD
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
 
 TRUNK = (
     sines((0.01, 0.35, 0.3)),
@@ -57,10 +60,10 @@ def said(found: FeetResult) -> list[str]:
 @pytest.mark.parametrize(
     ("joint", "axis", "gain", "late", "words"),
     [
-        ("left_ankle_pitch", "pitch", 1.05, 0.0, "'left_ankle_pitch' 1.05 times. "),
-        ("left_ankle_roll", "roll", 0.95, 0.0, "'left_ankle_roll' 0.95 times. "),
-        ("left_ankle_roll", "roll", 1.0, 0.008, " ms late. "),
-        ("left_ankle_roll", "roll", 1.0, -0.008, " ms early. "),
+        ("left_ankle_pitch", "pitch", 1.05, 0.0, "'left_ankle_pitch' 1.05 times"),
+        ("left_ankle_roll", "roll", 0.95, 0.0, "'left_ankle_roll' 0.95 times"),
+        ("left_ankle_roll", "roll", 1.0, 0.008, " ms late"),
+        ("left_ankle_roll", "roll", 1.0, -0.008, " ms early"),
     ],
 )
 def test_the_joint_is_named_and_neither_number_is_usable(
@@ -91,6 +94,78 @@ def test_play_in_an_encoders_drive_is_told_with_its_size(
         named = text.partition("'left_ankle_roll' ")[2]
         assert "mrad behind wherever it turns round" in named
         assert float(named.split()[0]) == pytest.approx(1e3 * play, rel=0.25)
+
+
+def standing(noise: bool = True) -> list[MotionLog]:
+    logs = [record(sway(f"sway_{seed}", seed, duration=30.0, torso=TRUNK)) for seed in (1, 2)]
+    return [noisy(log, seed) for seed, log in enumerate(logs)] if noise else logs
+
+
+@pytest.mark.parametrize("play", [0.001, 0.002])
+def test_play_of_a_standing_foots_joint_is_told_with_its_size(robot: RobotModel, play: float) -> None:
+    (text,) = said(
+        identify_feet(robot, [with_play(log, "left_ankle_roll", play) for log in standing()], settings=LINEAR)
+    )
+    assert text.startswith("left roll: ")
+    assert float(text.partition("'left_ankle_roll' ")[2].split()[0]) == pytest.approx(1e3 * play, rel=0.3)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.02])
+def test_a_standing_foots_joint_that_is_late_has_no_play(robot: RobotModel, late: float) -> None:
+    """The torque goes with the joint's rate itself, not with its sign."""
+    found = identify_feet(
+        robot, [misread(log, "left_ankle_roll", late=late) for log in standing()], settings=LINEAR
+    )
+    texts = said(found)
+    assert ["play" in text.partition("(valid")[0] or "behind" in text for text in texts] == [False] * bool(
+        late
+    )
+    assert all("'left_ankle_roll' 19 ms late" in text for text in texts)
+
+
+def on_soft_mount(log: MotionLog, tilt: float) -> MotionLog:
+    """The log of an IMU whose mount lets it tilt by so much [rad] for each m/s², its mass above."""
+    acceleration = log.linear_acceleration("chest")
+    turn = tilt * low_pass(np.cross([0.0, 0.0, 1.0], acceleration), log.period, 4.0)
+    orientation = Rotation.from_quat(log.orientation("chest"), scalar_first=True) * Rotation.from_rotvec(turn)
+    rates = log.angular_velocity("chest") + np.gradient(turn, log.period, axis=0)
+    columns = (*orientation.as_quat(scalar_first=True).T, *rates.T)
+    return log.with_columns(
+        dict(zip(imu_columns("chest", "orientation", "angular_velocity"), columns, strict=True))
+    )
+
+
+@pytest.mark.parametrize("tilt", [0.002, -0.004])
+def test_an_imu_on_a_soft_mount_is_told_with_its_tilt(robot: RobotModel, tilt: float) -> None:
+    logs = [on_soft_mount(log, tilt) for log in standing()]
+    texts = said(identify_feet(robot, logs, settings=LINEAR))
+    assert texts
+    for text in texts:
+        size = text.partition("the IMU tilts by ")[2].split()[0]
+        assert float(size) == pytest.approx(1e3 * abs(tilt), rel=0.2)
+
+
+def test_logs_without_an_accelerometer_tell_no_soft_mount(robot: RobotModel) -> None:
+    """Beside one that has it, too."""
+    first, second = (on_soft_mount(log, 0.002) for log in standing())
+    logs = [first, without(second, "linear_acceleration")]
+    assert "internal_error" not in codes(identify_feet(robot, logs, settings=LINEAR))
+    found = identify_feet(robot, [without(log, "linear_acceleration") for log in logs], settings=LINEAR)
+    assert not any("tilts" in text for text in said(found))
+
+
+def test_no_joint_between_imu_and_bush_is_misread(robot: RobotModel) -> None:
+    """As on a bench that holds a foot alone."""
+    on_foot = replace(robot, imu=replace(robot.required_imu, placement=robot.feet["left"].bush))
+    assert "internal_error" not in codes(identify_feet(on_foot, standing(), settings=LINEAR))
+
+
+@pytest.mark.parametrize(("play", "told"), [(1e-6, False), (2e-3, True)])
+def test_play_that_moves_no_number_is_not_said_even_of_exact_logs(
+    robot: RobotModel, play: float, told: bool
+) -> None:
+    exact = [with_play(log, "left_ankle_roll", play) for log in standing(noise=False)]
+    assert bool(said(identify_feet(robot, exact, settings=LINEAR))) == told
 
 
 def test_a_leg_all_of_whose_joints_are_late_is_told_as_one(robot: RobotModel, walks: list[MotionLog]) -> None:

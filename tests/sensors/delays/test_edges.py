@@ -18,7 +18,8 @@ from plantar.sensors.delays.refined_delays import RefinedDelays
 from plantar.sensors.delays.sensor_delay import _doubtful, _in_doubt, _surer
 
 LOG: Any = SimpleNamespace(period=0.005)
-RESIDUAL: Any = SimpleNamespace(balance=None, pair=None)
+RESIDUAL: Any = SimpleNamespace(balance=SimpleNamespace(cells=[]), pair=None)
+STEADY = np.zeros(0), np.zeros((3, 3))  # weights and inverse of delays that are the same throughout
 
 
 def stepped(
@@ -32,7 +33,7 @@ def stepped(
 
     def delays(_: object, held: np.ndarray | None = None) -> Delays:
         free = np.eye(3) if held is None or not len(held) else np.eye(3) - np.linalg.pinv(held) @ held
-        return Delays(free @ np.array(values), covariance, 60)
+        return Delays(free @ np.array(values), covariance, 60, *STEADY)
 
     monkeypatch.setattr(refining, "estimate_delays", delays)
     monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(0.004, 0.001, 30.0, 20))
@@ -90,7 +91,7 @@ def test_a_common_delay_is_anywhere_between_what_encoders_in_time_and_apart_make
     def delays(_: object, held: np.ndarray | None = None) -> Delays:
         known = {0: (0.0, 0.0005), 3: (0.004, 0.0001), 2: (apart, 0.0005)}
         value, std = known[0 if held is None else len(held)]
-        return Delays(np.array([value, value, 0.0]), std**2 * np.eye(3), 60)
+        return Delays(np.array([value, value, 0.0]), std**2 * np.eye(3), 60, *STEADY)
 
     monkeypatch.setattr(refining, "estimate_delays", delays)
     monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(0.004, 0.001, 30.0, 20))

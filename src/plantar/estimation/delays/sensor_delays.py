@@ -16,6 +16,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation.delays.bands import Band, bands_of
 from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, MODEL_ERROR
+from plantar.estimation.residual_covariance import score_cosines
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
 FEWEST_CELLS = 6  # axes in bands that must close
@@ -61,15 +62,39 @@ class _Cell:
     products: Array
     floor: float
     freedom: float
+    band: Band
+    axis: int
+
+    def scores(self, values: Array) -> Array:
+        """How each moment's miss pulls at the delays (delays,) that are found, by its lowest cosines, (m, delays)."""
+        gains, late = self.band.signals[self.axis, : self.band.sensors], self.band.late
+        signals = self.band.signals[self.axis, late.start :]
+        signals = signals - np.linalg.lstsq(gains.T, signals.T, rcond=RANK_TOLERANCE)[0].T @ gains
+        columns, missing = signals[:-1], signals[-1]
+        return score_cosines((columns * (missing - values @ columns)).T, self.band.duration)
 
 
 @dataclass(frozen=True)
 class Delays:
-    """`values` (delays,) [s], > 0: late; their `covariance`; `cells` took part."""
+    """`values` (delays,) [s], > 0: late; their `covariance`; `cells` took part, by their `weights`: the
+    delays' scores, so weighted, times `inverse` are what moves them."""
 
     values: Array
     covariance: Array
     cells: int
+    weights: Array
+    inverse: Array
+
+    def through_time(self, balances: Sequence[Balance]) -> Array:
+        """What delays that change through the logs add to `covariance`, of the same balances: they move all cells of a
+        log together, which do not disagree then."""
+        middle, weights = np.zeros_like(self.inverse), iter(self.weights)
+        for balance in balances:
+            if own := [next(weights) * cell.scores(self.values) for cell in balance.cells]:
+                few = min(len(scores) for scores in own)
+                total = np.sum([np.sqrt(len(scores) / few) * scores[:few] for scores in own], axis=0)
+                middle += total.T @ total
+        return np.asarray(self.inverse @ middle @ self.inverse)
 
 
 def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> Delays | None:
@@ -103,7 +128,7 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
     share = len(cells) / max(len(cells) - free.shape[1], 1)
     drawn = np.tensordot(weights, wrong, 1)
     middle = share * scores.T @ scores + drawn @ drawn.T / max(drawn.shape[1], 1)
-    return Delays(values, inverse @ middle @ inverse, len(cells))
+    return Delays(values, inverse @ middle @ inverse, len(cells), weights, inverse)
 
 
 def _null_space(held: Array) -> Array:
@@ -130,7 +155,8 @@ def _cells(band: Band) -> list[_Cell]:
     usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1])
     wrong = clear[:, delays + 1 :, delays + 1 :]
     floor = MODEL_ERROR**2 * power + np.trace(wrong, axis1=1, axis2=2) / max(wrong.shape[-1], 1)
-    return [_Cell(clear[axis], floor[axis], freedom) for axis in np.flatnonzero(explains & usable)]
+    found = np.flatnonzero(explains & usable).tolist()
+    return [_Cell(clear[axis], floor[axis], freedom, band, axis) for axis in found]
 
 
 def _beside(products: Array, count: int) -> Array:

@@ -177,12 +177,16 @@ def _zeros_of_stances(
 
 def _softening(fit: AxisFit) -> list[Cause]:
     """What a spring that loses slope as it bends may owe to its force sensor: rubber hardens, and an amplifier that
-    bends is steepest about its zero, where the stiffness is told. At most as much as its mean slope is less."""
+    bends is steepest about its zero, where the stiffness is told. Anything from nothing to all of the bend: then the
+    spring has its mean slope everywhere. Damping, told over all of it, is as unsure: either slope is the right one."""
     terms = fit.model.terms
-    if has_memory(fit.model) or "hardening" not in terms or fit.values[terms.index("hardening")] >= 0:
+    if has_memory(fit.model) or "hardening" not in terms:
         return []
-    effect = np.zeros(len(fit.values))
-    effect[0] = fit.values[0] - fit.equivalent[0]
+    effect, bends = np.zeros(len(fit.values)), terms.index("hardening")
+    if fit.values[bends] >= 0:
+        return []
+    less = 1 - fit.equivalent[0] / fit.values[0]
+    effect[[0, 1, bends]] = less * fit.values[0], less * fit.values[1], fit.values[bends]
     return [Cause("softening", effect, UNIFORM)]
 
 
@@ -190,8 +194,9 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     """A cube that the model leaves out and the motions show, though no held-out motion asked for it.
 
     It hardly matters to the torque, but the spring's slope in the motions' middle is not its mean slope; about the
-    angle's zero, which a turned IMU puts anywhere, a cube would say nothing of these motions. Empty where they are too
-    small to tell the two apart.
+    angle's zero, which a turned IMU puts anywhere, a cube would say nothing of these motions. Where the slope is less
+    outside, it may be the force sensor that bends, and damping moves by the same share. Empty where they are too small
+    to tell the two apart.
     """
     if any("hardening" in term for term in fit.model.terms):
         return []
@@ -211,4 +216,8 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
         return []
     before = np.zeros(size)
     before[: len(fit.values)] = fit.values
-    return [Cause("hardening", (found.values[:size] - before) / hardening, abs(hardening))]
+    moved = found.values[:size] - before
+    if hardening < 0:
+        alike = moved[0] * fit.values[1] / fit.values[0]
+        moved[1] = max(moved[1], alike, key=abs)
+    return [Cause("hardening", moved / hardening, abs(hardening))]

@@ -1,9 +1,10 @@
 """Joints between IMU and foot that are not read as the robot file says: a few per cent too much, late by themselves, or
-behind by the play of their encoder's drive.
+behind by the play of their encoder's drive; or the IMU itself, whose soft mount lets it tilt as it is accelerated.
 
 While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
 too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
-the torque tells the two apart. Where a foot stands it is the other way round: such a joint hardly moves the numbers.
+the torque tells the two apart. Where a foot stands such a joint moves the stiffness less, and the damping as much;
+an IMU that tilts by 2 mrad for each m/s² makes K 4 % too large and C up to 27 %.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, Array, cross
 from plantar.estimation import Block, fit_blocks, least_left
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
@@ -30,7 +31,7 @@ SURE = 5.0  # deviations of what is misread
 BETTER, BETTER_TURNING = 1.5, 1.3
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
-GAIN, LATE, PLAY = 0.2, 0.03, 0.02  # share; s; rad
+GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
 # Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
 # sign of its rate gives back half of what is missing.
 PART = 0.5
@@ -40,8 +41,9 @@ SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
 class Misread(NamedTuple):
-    """A joint, its `kind` of misreading, by how much it turns more [share], is read later [s] or is behind [rad], the
-    squares that are then left, and whether another stiffness or damping follows, outside of its interval."""
+    """A joint, its `kind` of misreading, and by how much it turns more [share], is read later [s] or is behind [rad];
+    or the IMU and its tilt [rad per m/s²]. The squares that are then left, and whether another stiffness or damping
+    follows, outside of its interval."""
 
     joint: str
     kind: str
@@ -52,22 +54,22 @@ class Misread(NamedTuple):
     def __str__(self) -> str:
         if self.kind == "late":
             return f"'{self.joint}' {1e3 * abs(self.size):.2g} ms {'late' if self.size > 0 else 'early'}"
+        if self.kind == "soft":
+            return f"{self.joint} tilts by {1e3 * abs(self.size):.2g} mrad for each m/s², as on a soft mount"
         if self.kind == "play":
             return f"'{self.joint}' {2e3 * self.size:.2g} mrad behind wherever it turns round"
         return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
 
 
 def misread_joint_notes(
-    robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block]
+    robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
 ) -> list[Note]:
-    """A warning where the torque of a foot that steps goes far better with a joint that is read otherwise, and that
-    moves stiffness or damping out of the interval of `wide`.
+    """A warning where the torque goes far better with a joint, or an IMU, that is read otherwise, and that moves
+    stiffness or damping out of the interval of `wide`.
 
-    tangents: the recordings' `tangent_blocks`.
+    recordings: with all of their logs; tangents: of the same, as they are fitted.
     """
-    if tangents[0].stances is None:
-        return []
-    alone = fit_blocks(tangents)
+    alone = fit_blocks(tangents, shared_offset=shared)
     each = [_columns(robot, one, wide) for one in recordings_of(tangents, recordings)]
     told = [np.column_stack([*columns.values()]) for columns in each]
     needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in each[0]])
@@ -76,7 +78,7 @@ def misread_joint_notes(
         return []
     close = {which: column for column, which in enumerate(each[0]) if left[column] <= ALIKE}
     fits = (
-        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values)
+        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values, shared)
         for which, column in close.items()
     )
     found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
@@ -86,18 +88,20 @@ def misread_joint_notes(
         return []
     alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
-        f"{wide.foot} {wide.axis}: the torque follows the angle far better with a joint that was read otherwise: "
+        f"{wide.foot} {wide.axis}: the torque follows the angle far better with what was read otherwise: "
         f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders without play, whose angles are the "
-        "links', all read at one moment)"
+        "links', all read at one moment; a stiff mount of the IMU)"
     )
     return [Note(MISREAD, "warning", text)]
 
 
-def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual: Array) -> Misread | None:
+def _misread(
+    joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual: Array, shared: bool
+) -> Misread | None:
     """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
-    fit = fit_blocks(wider)
+    fit = fit_blocks(wider, shared_offset=shared)
     size, std = float(fit.values[-1]), float(fit.std[-1])
-    most = {"gain": GAIN, "late": LATE, "play": PLAY}[kind]
+    most = {"gain": GAIN, "late": LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
     if not (SURE * std < away < most and fit.condition_number < SINGULAR):
         return None
@@ -107,7 +111,8 @@ def _misread(joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
     """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
-    each second by which it is read later, for each radian by which it stays behind its own rate."""
+    each second by which it is read later, for each radian by which it stays behind its own rate; and for each radian by
+    which the IMU tilts with each m/s²."""
     columns = dict[tuple[str, str], Array]()
     for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
@@ -117,8 +122,28 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
         turns = np.tanh(motion[:, 1] / (SOFT * fast)) if fast > 0 else np.zeros_like(own)
         columns[joint, "play"] = own * fit.values[0] * turns
     # One bus often reads all joints of a leg.
-    late = [column for (_, kind), column in columns.items() if kind == "late"]
-    return columns | {(f"all joints to the {fit.foot} foot", "late"): np.sum(late, axis=0)}
+    if late := [column for (_, kind), column in columns.items() if kind == "late"]:
+        columns[f"all joints to the {fit.foot} foot", "late"] = np.sum(late, axis=0)
+    tilts = _tilts(robot, recording, fit.foot)[:, ROTATIONAL_AXES.index(fit.axis)]
+    return columns | {("the IMU", "soft"): tilts @ fit.values[:2]}
+
+
+def _tilts(robot: RobotModel, recording: Recording, foot: str) -> Array:
+    """The bush's angles and their rates at the rows of a fit that an IMU sees which its mount lets tilt, its mass above
+    or below, by 1 rad for each m/s² of acceleration, (n, 2, 2); zero where nothing is known."""
+    log, name, period = recording.log, robot.required_imu.name, recording.period
+    key = (MISREAD, foot, name)  # both axes ask
+    if key not in recording.kept:
+        acceleration = np.zeros((len(log), 3))
+        if log.has_imu(name, "linear_acceleration"):
+            acceleration = np.nan_to_num(log.linear_acceleration(name))
+        mean = acceleration.mean(axis=0)
+        up = mean / max(float(np.linalg.norm(mean)), np.finfo(float).tiny)
+        turn = within_stances(cross(up, acceleration), period, recording.cutoff, recording.stances[foot])
+        angles = np.einsum("nrk,nk->nr", recording.imu_turns[foot], turn)
+        both = np.stack([angles, differentiate(angles, period)], axis=2)
+        recording.kept[key] = np.nan_to_num(both[recording.rows(foot)])
+    return cast(Array, recording.kept[key])
 
 
 def _turns(robot: RobotModel, recording: Recording, foot: str) -> dict[str, tuple[Array, Array]]:

@@ -172,10 +172,12 @@ def _left(
     held: combinations (c, count) of delays that stay as they are; None: one delay common to all feet is left.
     """
     if held is not None:
-        own = estimate_delays([residual.balance for residual in residuals], held)
+        balances = [residual.balance for residual in residuals]
+        own = estimate_delays(balances, held)
         if own is None or np.abs(own.values).max() > LONGEST:
             return None
-        std = float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD))
+        variances = np.diag(own.covariance + own.through_time(balances))
+        std = float(np.hypot(np.sqrt(variances.max()), LEAST_STD))
         return own.values, std, float(own.cells)
     common = estimate_delay([residual.pair for residual in residuals])
     if common is None:
