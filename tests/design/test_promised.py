@@ -79,6 +79,12 @@ def test_errors_of_both_feet_and_all_draws_tell_what_a_play_is_off_by() -> None:
     assert promised.error95(one, feet, "pitch", "stiffness", 50.0) is None
 
 
+def test_a_floor_that_gives_way_in_rehearsals_is_no_error() -> None:
+    """Spring and floor in series are softer by what the floor tilts for each radian of the spring."""
+    one = replace(drawn(100.0 / 1.01), yields={("left", "roll"): 0.01})
+    assert promised.errors(one, *ROLL, 50.0) == pytest.approx([0.0], abs=1e-9)
+
+
 def test_a_number_is_usable_where_every_draw_says_so() -> None:
     assert promised.usable(drawn(100.0, 101.0), *ROLL)
     assert not promised.usable(drawn(100.0, None), *ROLL)

@@ -94,6 +94,13 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     assert "feet of 600 N·m/rad could hold it, but" in stiff
 
 
+def test_the_floor_of_rehearsals_gives_way_a_little() -> None:
+    """More about the axis along the sole, which is longer than wide."""
+    yields = design_samples.designed().nominal.yields
+    for foot in ("left", "right"):
+        assert 1e-4 < yields[foot, "pitch"] < yields[foot, "roll"] < 0.005
+
+
 def test_limits_are_told_with_the_worst_of_the_rehearsals(written: Path) -> None:
     found = design_samples.designed()
     unlike = tuple(

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from plantar.contact.polygon import edge_distances, edge_normals
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.design.reach import ends
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError, PlantarError
@@ -42,8 +42,9 @@ class Rehearsal:
     `standing_margins` before it moves; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
-    played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `rollout`: how
-    the robot moved in its `world`; `results`: what `identify feet` finds in recordings of it.
+    played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `yields`: by foot
+    and axis, how far the floor tilts for each radian that the bush's spring bends: no robot's floor is so soft.
+    `rollout`: how the robot moved in its `world`; `results`: what `identify feet` finds in recordings of it.
     """
 
     factor: float
@@ -55,6 +56,7 @@ class Rehearsal:
     bend: float = 0.0
     fell: str | None = None
     bushes: Mapping[str, Array] = field(default_factory=dict, repr=False)
+    yields: Mapping[tuple[str, str], float] = field(default_factory=dict)
     rollout: Rollout | None = field(default=None, repr=False)
     world: Physics | None = field(default=None, repr=False)
     results: tuple[FeetResult | None, ...] = field(default=(), repr=False)
@@ -122,6 +124,7 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, world: Physics
     truth = _recorded(factor, robot, rollout, world, 0).truth.columns
     margins, standing = (np.full(2, np.inf) for _ in range(2))
     load, friction, bend = np.inf, 0.0, 0.0
+    yields = dict[tuple[str, str], float]()
     weight = robot.mass * GRAVITY / len(robot.feet)
     for name, foot in robot.feet.items():
         pressure = np.column_stack([truth[f"{name}.contact.cop.{axis}"] for axis in "xy"])
@@ -134,9 +137,11 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, world: Physics
         load = min(load, float(force[:, 2].min()) / weight)
         sideways = np.linalg.norm(force[:, :2], axis=1) / np.maximum(force[:, 2], 1e-3)
         friction = max(friction, float(sideways.max()))
-        bend = max(
-            bend, *(float(np.abs(truth[f"{name}.deflection.{axis}"]).max()) for axis in ("pitch", "roll"))
-        )
+        bush = (world.bushes or {})[name]
+        for axis, spring in zip(ROTATIONAL_AXES, (bush.pitch_stiffness, bush.roll_stiffness), strict=True):
+            bend = max(bend, float(np.abs(truth[f"{name}.deflection.{axis}"]).max()))
+            torque = truth[f"{name}.torque.{axis}"] - truth[f"{name}.torque.{axis}"].mean()
+            yields[name, axis] = spring * float(torque @ truth[f"{name}.tilt.{axis}"] / (torque @ torque))
     bushes = {foot: bent[:, 1:] for foot, bent in rollout.bush.items()}
     limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
     effort = max(
@@ -144,4 +149,6 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, world: Physics
         for place, joint in enumerate(rollout.joints)
     )
     near, at_rest = ((float(side[0]), float(side[1])) for side in (margins, standing))
-    return Rehearsal(factor, near, at_rest, load, friction, effort, bend, None, bushes, rollout, world)
+    return Rehearsal(
+        factor, near, at_rest, load, friction, effort, bend, None, bushes, yields, rollout, world
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import Design
 from plantar.results.feet import FeetResult, Parameter
 from plantar.twin.presets import DEFAULT, preset_named
+
+SOFTENED: Final = {"stiffness": 1, "damping": 2}  # powers
 
 
 def half_widths(found: Design, axis: str, name: str) -> dict[float, float | None]:
@@ -49,9 +52,14 @@ def error95(one: Rehearsal, feet: Iterable[str], axis: str, name: str, truth: fl
 
 
 def errors(one: Rehearsal, foot: str, axis: str, name: str, truth: float) -> list[float]:
-    """By how much a parameter came out too large in each draw [% of what is true there]."""
+    """By how much a parameter came out too large in each draw [% of what is true there].
+
+    True is what stands on the floor of rehearsals: spring and damper K + C s in series with a floor that tilts by a
+    share y of what the spring bends make K/(1 + y) and C/(1 + y)².
+    """
+    softer = (1 + one.yields.get((foot, axis), 0.0)) ** SOFTENED[name]
     values = (row.value for row in _rows(one.results, foot, axis, name))
-    return [100 * (value / (one.factor * truth) - 1) for value in values if value is not None]
+    return [100 * (value * softer / (one.factor * truth) - 1) for value in values if value is not None]
 
 
 def usable(one: Rehearsal, foot: str, axis: str, name: str) -> bool:

@@ -11,6 +11,7 @@ from math import erfc
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
 from plantar.feet.interval_width.cause import Cause
@@ -20,9 +21,10 @@ from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_balance import TorqueGain
 
-WINDOW = 1.0  # s, over which accelerations average out
+WINDOW = 2.0  # s, over whose Hann window accelerations average out that repeat once a second and faster
 CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its sensors were zeroed under load
-SCATTER = 0.005  # of the weight, by which a recording's sums may be off: zeros of sensors, accelerations
+SCATTER = 0.005  # of the weight, by which all of a recording's sums may be off: zeros of sensors
+BENT = 0.002  # of the weight, by which its sums may follow the weight from foot to foot: sensors are not quite linear
 HAND = 2.0  # times the scatter of a recording's sums: what a hand may carry on average that carries now more, now less
 REWEIGHTED = 5  # rounds
 ALIKE = 10.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
@@ -38,7 +40,7 @@ FAULT = 0.1
 
 
 class GainError(NamedTuple):
-    """By which `share` a sensor seems to read too much, with its `std`.
+    """By which `share` a sensor seems to read too much, and with which `std` it is told from the other feet's.
 
     And the deviations of a `usual` gain and of all `other` reasons for it.
     """
@@ -100,12 +102,11 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
     own, other = robot.uncertainty.wrench_gain, float(np.hypot(_mass_deviation(robot), LEAST_DEVIATION))
     apart = np.eye(len(robot.feet)) - 1 / len(robot.feet)
     inverse, covariance = _inverse_gains(windows, apart / max(ALIKE * own, SURELY_ALIKE) ** 2)
-    told_apart = np.abs(apart @ inverse) > NORMAL95 * np.sqrt(np.diag(apart @ covariance @ apart))
+    stds = np.sqrt(np.diag(apart @ covariance @ apart))
+    told_apart = np.abs(apart @ inverse) > NORMAL95 * stds
     together = 1 / float(inverse.mean()) - 1
     errors = {}
-    for name, gain, std, alone in zip(
-        robot.feet, inverse, np.sqrt(np.diag(covariance)), told_apart, strict=True
-    ):
+    for name, gain, std, alone in zip(robot.feet, inverse, stds, told_apart, strict=True):
         if gain > 0:
             found = GainError(float(1 / gain - 1), float(std), own, other)
             doubted = not (alone or found.sure) and abs(together) > abs(found.share)
@@ -118,16 +119,18 @@ def _inverse_gains(windows: Sequence[Array], alike: Array) -> tuple[Array, Array
 
     alike: prior precision (feet, feet).
     """
-    deviations = [SCATTER] * len(windows)
+    hands = [0.0] * len(windows)
     for _ in range(REWEIGHTED):
         precision, right = alike.copy(), np.zeros(len(alike))
-        for each, deviation in zip(windows, deviations, strict=True):
-            # What is wrong in one window is so in others of its recording: together they count once.
-            precision += each.T @ each / (len(each) * deviation**2)
-            right += each.mean(axis=0) / deviation**2
+        for each, hand in zip(windows, hands, strict=True):
+            # What is wrong in one window is so in others of its recording: together they count once. Zeros are off
+            # wherever the weight is.
+            middle, variance = each.mean(axis=0), SCATTER**2 + hand**2
+            precision += np.cov(each.T, bias=True) / (BENT**2 + hand**2) + np.outer(middle, middle) / variance
+            right += middle / variance
         inverse = np.linalg.solve(precision, right)
         # A hand on the robot carries now more, now less.
-        deviations = [float(np.hypot(SCATTER, HAND * (each @ inverse).std())) for each in windows]
+        hands = [HAND * float((each @ inverse).std()) for each in windows]
     return np.asarray(inverse), np.asarray(np.linalg.inv(precision))
 
 
@@ -166,8 +169,10 @@ def torque_gain_causes(fit: AxisFit, gains: Mapping[Axis, TorqueGain]) -> list[C
 def _windows(recording: Recording, weight: float) -> Array:
     """Mean vertical force of each foot over `weight`, in windows in which the feet carry the robot, (n, feet)."""
     forces = np.column_stack([state.force_z for state in recording.raw.values()]) / weight
-    length = max(1, round(WINDOW / recording.period))
-    whole = forces[: len(forces) // length * length].reshape(-1, length, forces.shape[1]).mean(axis=1)
+    half = max(1, round(WINDOW / 2 / recording.period))
+    if len(forces) < 2 * half:
+        return np.empty((0, forces.shape[1]))
+    whole = sliding_window_view(forces, 2 * half, axis=0)[::half] @ (np.hanning(2 * half + 1)[1:] / half)
     return np.asarray(whole[whole.sum(axis=1) > CARRIED])
 
 

@@ -42,7 +42,8 @@ def truth_columns(rollout: Rollout, feet: dict[str, CutFoot]) -> Columns:
 
     `<foot>.deflection.*` [m, rad], `<foot>.rate.*`, `<foot>.torque.*` (generalised, of the whole bush; z is a force),
     `<foot>.beside.*` (the part that is no linear spring or damper), `<foot>.contact.*` (force of the floor in the
-    world, and centre of pressure in the sole's frame, NaN in the air), `<foot>.sole.*` (place in the world), `base.*`.
+    world, and centre of pressure in the sole's frame, NaN in the air), `<foot>.sole.*` (place in the world),
+    `<foot>.tilt.*` (of the sole against the floor, which gives way a little [rad]), `base.*`.
     """
     columns = labelled("base", ("x", "y", "z", "qw", "qx", "qy", "qz"), rollout.base)
     for name, foot in feet.items():
@@ -55,6 +56,9 @@ def truth_columns(rollout: Rollout, feet: dict[str, CutFoot]) -> Columns:
         columns |= labelled(f"{name}.contact.force", "xyz", force)
         columns |= labelled(f"{name}.contact.cop", "xy", pressure)
         columns |= labelled(f"{name}.sole", "xyz", rollout.sensors[f"{name}.place"])
+        up = _up_in_sole(rollout, name)
+        tilt = np.column_stack([np.arctan2(up[:, 0], up[:, 2]), -np.arcsin(np.clip(up[:, 1], -1.0, 1.0))])
+        columns |= labelled(f"{name}.tilt", ("pitch", "roll"), tilt)
     if rollout.hand.shape[1]:
         columns |= labelled("hand.force", "xyz", rollout.hand)
     return columns
