@@ -34,13 +34,13 @@ def shared_data() -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def one_cache(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What the twin plans and plays is kept for all processes, and for the next session where the source of motions and
-    twin is the same; nobody's own cache is touched."""
-    lasting = getattr(request.config, "cache", None)
-    folder = lasting.mkdir("twin") if lasting else tmp_path_factory.getbasetemp() / "twin-cache"
+def one_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What the twin plans and plays is kept for this session, for all its processes; nobody's own cache is touched."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PLANTAR_CACHE", str(folder))
+        patch.setenv("PLANTAR_CACHE", str(folder / "twin-cache"))
         yield
 
 
