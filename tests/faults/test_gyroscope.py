@@ -189,3 +189,14 @@ def test_a_reversed_axis_names_what_else_would_read_alike(log: MotionLog) -> Non
     (finding,) = findings(changed(yawing, yawing.stack(GYROSCOPE) * [1, 1, -1]))
     assert "angular_velocity.z'" in finding.text
     assert "or the orientation's quaternion is inverted" in finding.text
+
+
+def test_windows_behind_an_empty_row_are_compared_too(log: MotionLog) -> None:
+    orientation = log.orientation("chest")
+    assert orientation is not None
+    rates = log.stack(GYROSCOPE).copy()
+    rates[len(rates) // 10] = np.nan
+    whole, torn = (Turns.of(changed(log, one), "chest", orientation) for one in (log.stack(GYROSCOPE), rates))
+    assert whole is not None
+    assert torn is not None
+    assert len(torn.integral) > 0.8 * len(whole.integral)

@@ -78,7 +78,7 @@ def test_nothing_is_known_at_the_end_of_a_stretch_and_the_grid_is_even_without_w
     before, after = np.searchsorted(found.time, [start, end])
     assert after == before + 1
     empty = np.flatnonzero(np.isnan(found.column(KNEE)))
-    np.testing.assert_array_equal(empty, np.arange(before - 14, before + 1))  # 30 ms
+    np.testing.assert_array_equal(empty, np.arange(before - 49, before + 1))  # 0.1 s
     assert evenly_sampled(found) is found
     assert sampling(found).gaps == ()
     thin = thinned(found).column(KNEE)
@@ -87,6 +87,54 @@ def test_nothing_is_known_at_the_end_of_a_stretch_and_the_grid_is_even_without_w
     np.testing.assert_allclose(
         thin[known], thinned(found).time[known], atol=1e-6
     )  # no step passes the filter
+
+
+@pytest.mark.parametrize("unit", [1e3, 1e9])
+def test_a_clock_in_other_units_is_left_to_those_who_tell_it(unit: float) -> None:
+    log = long_log(x=moving(TIME, [(300.0, 420.0)], 0.5))
+    wrong = MotionLog("long", log.time * unit, log.columns)
+    assert most_moving(wrong) is wrong
+
+
+def test_other_sensors_do_not_choose() -> None:
+    log = long_log(x=moving(TIME, [(300.0, 420.0)], 0.5))
+    hands = {f"wrench.hand.torque.{axis}": moving(TIME, [(900.0, 1800.0)], 1.0, 50.0) for axis in "xyz"}
+    found = most_moving(MotionLog("long", log.time, {**hands, **log.columns}), {"left"})
+    assert {5, 6} <= starts_of(found)
+
+
+def test_a_spike_is_no_motion() -> None:
+    torque = moving(TIME, [(60.0 * k, 60.0 * k + 60.0) for k in range(20, 30)], 0.5)
+    for minute in range(11):
+        torque[minute * 1200 + 600] = 1e4
+    assert set(range(20, 30)) == starts_of(most_moving(long_log(x=torque)))
+
+
+def test_a_slow_sensor_has_no_gap_where_stretches_are_left_out(robot: RobotModel) -> None:
+    time = np.arange(0.0, 900.0, 0.01)
+    log = long_log(900.0, 100.0, x=moving(time, [(120.0, 180.0), (600.0, 660.0)], 0.5))
+    sensor = robot.feet["left"].wrench.name
+    names = [f"wrench.{sensor}.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
+    slow = np.where(
+        np.arange(len(time)) % 4 == 2, moving(time, [(120.0, 180.0), (600.0, 660.0)], 0.5), np.nan
+    )
+    found = most_moving(MotionLog("long", log.time, {**log.columns, **dict.fromkeys(names, slow)}))
+    assert found.left_out
+    assert [*check_gaps(robot, found)] == []
+
+
+def test_rows_whose_time_steps_back_leave_what_is_left_out_as_it_is(tmp_path: Path) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet
+
+    log = long_log(x=moving(TIME, [(300.0, 420.0)], 0.5))
+    time = log.time.copy()
+    time[[1000, 6500, 7000, 7199, 7201]] -= 3.0
+    table = pa.table({"time": time, **log.columns})
+    pyarrow.parquet.write_table(table, tmp_path / "long.parquet")
+    read = open_log(tmp_path / "long.parquet", longest=LONGEST)
+    assert sampling(read).gaps == ()
+    assert len(read.left_out) == len(most_moving(log).left_out)
 
 
 def test_a_gap_of_the_log_itself_stays_one() -> None:

@@ -67,3 +67,19 @@ def test_an_imu_without_one_whole_sample_is_refused(robot: RobotModel) -> None:
     nothing = {"imu.chest.angular_velocity.x": np.full(len(log), np.nan)}
     with pytest.raises(DataError, match="imu 'chest' has no sample with all values"):
         asked(robot, without(log.with_columns(nothing), "orientation"))
+
+
+def test_across_a_gap_nobody_knows_how_it_has_turned(robot: RobotModel) -> None:
+    """Two minutes upright, then two minutes leaning by 0.1 rad, hours later: neither knows of the other."""
+    time, lean = np.arange(0.0, 120.0, 0.02), 0.1
+    imu = robot.imu
+    assert imu is not None
+    leaning = np.where(np.arange(2 * len(time)) < len(time), 0.0, lean)
+    columns = {f"imu.{imu.name}.angular_velocity.{axis}": np.zeros(2 * len(time)) for axis in "xyz"}
+    up = (np.sin(leaning), np.zeros(2 * len(time)), np.cos(leaning))
+    columns |= {
+        f"imu.{imu.name}.linear_acceleration.{axis}": 9.81 * one for axis, one in zip("xyz", up, strict=True)
+    }
+    orientation, _ = attitude(MotionLog("two", np.concatenate([time, time + 7200.0]), columns), imu, [])
+    tilt = np.arccos(rotation_from_quaternion(orientation)[:, 2, 2])
+    np.testing.assert_allclose(tilt, leaning, atol=1e-6)

@@ -44,17 +44,22 @@ def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if known and all(column.any() for column in known):
             gaps += [(start, end, what) for start, end in _holes(log, ~np.all(known, axis=0))]
     lost = sum(end - start for start, end, _ in gaps)
-    if lost > LEAST_LOST * log.duration:
+    lasts = log.duration - sum(end - start for start, end in log.left_out)
+    if lost > LEAST_LOST * lasts:
         start, end, _ = max(gaps, key=lambda gap: gap[1] - gap[0])
         what = " and ".join(sorted({what for _, _, what in gaps}))
         text = f"{what}: {len(gaps)} gap{'s' * (len(gaps) > 1)}, the longest from t = {start:g} to {end:g} s"
-        told = f"{text}, {100 * lost / log.duration:.0f} % of the log: left out, and the delay is less well known"
+        told = f"{text}, {100 * lost / lasts:.0f} % of the log: left out, and the delay is less well known"
         yield Finding("gaps", f"{told} (valid: every sensor at every time)")
 
 
 def _holes(log: MotionLog, empty: Mask) -> list[tuple[float, float]]:
     """Start and end [s] of runs of empty cells that are not bridged; a sensor may start late and end early."""
     inner = [run for run in runs(empty) if run.start > 0 and run.stop < len(empty)]
+    begins = {begin for begin, _ in log.left_out}
+    inner = [
+        run for run in inner if begins.isdisjoint(log.time[run].tolist())
+    ]  # emptied where others are left out
     spans = [(float(log.time[run.start]), float(log.time[run.stop - 1])) for run in inner]
     return [(start, end) for start, end in spans if end - start > BRIDGED]
 

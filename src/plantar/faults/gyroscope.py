@@ -60,10 +60,11 @@ class Turns:
         if len(log) < 2 * stride:
             return None
         steps = (rates[1:] + rates[:-1]) / 2 * np.diff(log.time)[:, None]
-        total = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
+        total = np.vstack([np.zeros(3), np.cumsum(np.nan_to_num(steps), axis=0)])
+        missing = np.concatenate([[0], np.cumsum(np.isnan(steps).any(axis=1))])
         starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))
         ends = starts + stride
-        whole = complete(total[ends] - total[starts], orientation[starts], orientation[ends])
+        whole = complete(orientation[starts], orientation[ends]) & (missing[ends] == missing[starts])
         starts, ends = starts[whole], ends[whole]
         if starts.size == 0:
             return None

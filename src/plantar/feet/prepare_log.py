@@ -56,7 +56,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `faults`).
     """
     _require(robot)
-    log = most_moving(log)
+    log = most_moving(log, {foot.wrench.name for foot in robot.feet.values()})
     # Its samples are put right while it is checked; where time is wrong, an even grid could take any memory.
     if len(log) > LONG and findings is None and is_even(log):
         with ThreadPoolExecutor(1) as pool:

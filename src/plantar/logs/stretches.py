@@ -6,8 +6,8 @@ best stretches are taken in turn by both, so that no foot, axis or parameter is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,11 @@ from plantar.notes import Note
 LONGEST = 600.0  # s of one recording that are worked on: of a longer one those stretches that move most
 STRETCH = 60.0  # s: it holds motions, and delays, which are told beside drifts of 20 s, are told in each
 CELL = 0.1  # s over which torques are averaged: what is faster is noise, or a sole that knocks
-BLANK = 0.03  # s at the end of a stretch that are emptied, so that nothing is filtered or bridged beyond it
+BLANK = 0.1  # s at the end of a stretch that are emptied, so that nothing is filtered, bridged or read late beyond it
+PERIODS = (
+    1e-5,
+    1.0,
+)  # s: samples that follow each other otherwise are no log in seconds, which is told elsewhere
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,14 @@ class Stretches:
     rows: Mask
     blank: Mask
     lasts: float
+
+    def without(self, lost: Mask) -> Stretches:
+        """The same of rows of which some, `lost` (n,), are not kept: then the one before ends its stretch."""
+        ends = np.flatnonzero(self.blank & ~np.append(self.blank[1:], False))
+        blank = self.blank.copy()
+        for end in ends[lost[ends]]:
+            blank[: end + 1][np.flatnonzero(~lost[: end + 1])[-1:]] = True
+        return replace(self, blank=blank[~lost])
 
     def log(self, log: MotionLog) -> MotionLog:
         """A recording that holds these rows alone, the last of each stretch empty already, with what is left out."""
@@ -43,9 +55,13 @@ class Stretches:
         return MotionLog(log.name, log.time, log.columns, log.path, log.sha256, notes, out)
 
 
-def most_moving(log: MotionLog) -> MotionLog:
-    """The stretches of a log of more than LONGEST that move most; itself where it is shorter, or they are chosen."""
-    found = None if log.left_out else stretches_of(log.time, log.columns, log.columns.__getitem__)
+def most_moving(log: MotionLog, sensors: Collection[str] = ()) -> MotionLog:
+    """The stretches of a log of more than LONGEST that move most; itself where it is shorter, or they are chosen.
+
+    sensors: as in `stretches_of`.
+    """
+    chosen = any(note.code == "long_recording" for note in log.notes)
+    found = None if chosen else stretches_of(log.time, log.columns, log.columns.__getitem__, sensors)
     if found is None:
         return log
     columns = {name: values[found.rows] for name, values in log.columns.items()}
@@ -56,18 +72,27 @@ def most_moving(log: MotionLog) -> MotionLog:
 
 
 def stretches_of(
-    time: Array, names: Iterable[str], read: Callable[[str], Array], longest: float = LONGEST
+    time: Array,
+    names: Iterable[str],
+    read: Callable[[str], Array],
+    sensors: Collection[str] = (),
+    longest: float = LONGEST,
 ) -> Stretches | None:
     """The stretches that move most of a recording of these times (N,) [s]; None where it is no longer than `longest`.
 
-    names: of its columns, of which torques of force sensors are read, one at a time.
+    names: of its columns, of which torques about x and y are read, one at a time: of these force `sensors`, of all
+    where it has none of them.
     """
-    period = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
-    if not period > 0 or len(time) * period <= longest * (1 + 1e-6):
+    steps = np.diff(time)
+    period = float(np.median(steps[steps > 0])) if (steps > 0).any() else np.nan
+    if not PERIODS[0] < period < PERIODS[1] or len(time) * period <= longest * (1 + 1e-6):
         return None
-    width, count = round(STRETCH / period), int(longest / STRETCH)
+    width, count = round(STRETCH / period), max(1, int(longest / STRETCH))
     starts = np.arange(0, len(time) - width + 1, width)  # what is left behind the last one is shorter
-    torques = [name for name in names if name.startswith("wrench.") and ".torque." in name]
+    bending = [
+        name for name in names if name.startswith("wrench.") and name.endswith((".torque.x", ".torque.y"))
+    ]
+    torques = [name for name in bending if name.split(".")[1] in sensors] or bending
     told = np.array([_told(read(name), width, len(starts), max(1, round(CELL / period))) for name in torques])
     # The best of each column, then the second of each, and so on, each once.
     in_turn = np.argsort(-told.reshape(-1, len(starts)), axis=1, kind="stable").T.ravel()
@@ -79,17 +104,17 @@ def stretches_of(
     blank = np.zeros(len(places), dtype=bool)
     for last in np.flatnonzero(np.diff(places) > 1):
         blank[max(0, last + 1 - max(1, round(BLANK / period))) : last + 1] = True
-    return Stretches(rows, blank, float(time[-1] - time[0]))
+    return Stretches(rows, blank, float(np.nanmax(time) - np.nanmin(time)))
 
 
 def _told(torque: Array, width: int, count: int, cell: int) -> Array:
     """Variance of a torque (N,) and of its changes in each of `count` stretches of `width` rows, (2, count)."""
     cells = width // cell
     rows = torque[: width * count].reshape(count, width)[:, : cells * cell].reshape(count, cells, cell)
-    known = np.isfinite(rows)
-    with np.errstate(invalid="ignore"):  # cells without a reading
-        means = np.where(known, rows, 0.0).sum(axis=2) / known.sum(axis=2)
-    return np.array([_variance(means), _variance(np.diff(means, axis=1))])
+    # The median of each: of a stretch in which nothing moves one spike would make the most moving of all.
+    known, ordered = np.isfinite(rows).sum(axis=2), np.sort(rows, axis=2)  # what is not known comes last
+    middles = np.take_along_axis(ordered, (np.maximum(known - 1, 0) // 2)[:, :, None], axis=2)[:, :, 0]
+    return np.array([_variance(middles), _variance(np.diff(middles, axis=1))])
 
 
 def _variance(values: Array) -> Array:

@@ -127,12 +127,19 @@ def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEule
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     runs_of_log = _known_runs(robot, signals, wrenches)
-    found = [_along(robot, log, signals.during(run), wrenches[run]) for run in runs_of_log]
+    # Of a long recording each run may have a delay of its own, hours after the last one.
+    labels = [
+        f"{log.name} from {log.time[run.start]:.0f} s" if log.left_out else log.name for run in runs_of_log
+    ]
+    found = [
+        _along(robot, log, label, signals.during(run), wrenches[run])
+        for label, run in zip(labels, runs_of_log, strict=True)
+    ]
     return [one for one in found if one is not None]
 
 
 def _along(
-    robot: RobotModel, log: MotionLog, signals: InertialSignals, wrenches: Array
+    robot: RobotModel, log: MotionLog, label: str, signals: InertialSignals, wrenches: Array
 ) -> NewtonEulerResidual | None:
     """Both sides in the longest segment in which nobody pushes, of the signals of a run; None where it is too short."""
     edge, count = round(EDGE / log.period), len(wrenches)
@@ -164,7 +171,7 @@ def _along(
     signals = replace(signals)
     predicted, by_encoders = moving([predicted, by_encoders], period)
     sides = NewtonSides(loads, transfers, predicted, by_encoders, period)
-    found = sides.closed(robot.uncertainty, log.name, round(SHORTEST / period))
+    found = sides.closed(robot.uncertainty, label, round(SHORTEST / period))
     if found is None or not closes(found.pair):
         return None
     calm = found.calm

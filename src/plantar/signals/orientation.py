@@ -10,7 +10,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
 from plantar.signals.filters import differentiate
-from plantar.signals.resampling import interpolate
+from plantar.signals.resampling import GAP_PERIODS, interpolate
 
 
 def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
@@ -36,7 +36,10 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
         attitude_from_inertial,  # its rotations cost start-up, and few logs need them
     )
 
-    orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
+    # Across a gap nobody knows how it has turned.
+    breaks = np.flatnonzero(np.diff(log.time) > GAP_PERIODS * log.period) + 1
+    pieces = [attitude_from_inertial(one[:, :3], one[:, 3:], log.period) for one in np.split(bridged, breaks)]
+    orientation = np.concatenate(pieces)
     orientation[~whole] = np.nan
     text = f"{log.name}: no IMU orientation; gravity's direction blended from gyroscope and accelerometer"
     notes.append(Note("attitude_derived", "warning", text))

@@ -87,7 +87,9 @@ def beside_drift(
     as_fitted = np.array(fitted.imu_turned)
     missed = left(as_fitted)
     if recording.imu_turns[fitted.foot].any() and mount:
-        turned = _mount_that_fits(left, as_fitted, mount, float(np.ptp(recording.time[prediction.scored])))
+        turned = _mount_that_fits(
+            left, as_fitted, mount, np.count_nonzero(prediction.scored) * recording.period
+        )
         missed = left(turned) if np.abs(turned).max() < TURNED * mount else missed
     return replace(row, **error_measures(quick(torque), quick(torque) - missed, 0.0))
 

@@ -90,6 +90,10 @@ def _columns(
 ) -> dict[str, Array]:
     """A column for each core after another: pages of all at once would take as much memory as their numbers."""
     rows, together = source.metadata.num_rows, pa.cpu_count()
+    if kept is not None and len(kept) != rows:
+        raise LogError(
+            f"had {len(kept)} rows a moment ago and has {rows} now", path=path, valid="a file that is closed"
+        )
     values = np.empty((len(names), rows if kept is None else np.count_nonzero(kept)))
     for first in range(0, len(names), together):
         some = names[first : first + together]

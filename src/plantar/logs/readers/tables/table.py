@@ -27,7 +27,7 @@ STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is r
 
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
-    """Read a table log; `robot` is not needed. Raises LogError with file, column, time and value."""
+    """Read a table log; `robot`: whose torques choose of a long one. Raises LogError with file, column, time, value."""
     notes: list[Note] = []
     header: list[str] = []
 
@@ -35,7 +35,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         header.extend(names)
         return _known(names, path)
 
-    stretches = _stretches(path, limit) if _is_parquet(path) and limit.longest < np.inf else None
+    stretches = _stretches(path, robot, limit) if _is_parquet(path) and limit.longest < np.inf else None
     rows = None if stretches is None else stretches.rows
     columns = _columns(path, limit, choose, notes, rows, strict=True)
     time = columns.pop("time")
@@ -52,13 +52,14 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     keep = _increasing(time, path, notes)
     if not keep.all():
         time, columns = time[keep], {name: values[keep] for name, values in columns.items()}
+        stretches = None if stretches is None else stretches.without(~keep)
     for values in (time, *columns.values()):
         values.setflags(write=False)  # handed over, not copied
     log = MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
     return log if stretches is None else stretches.log(log)
 
 
-def _stretches(path: Path, limit: ReadLimit) -> Stretches | None:
+def _stretches(path: Path, robot: RobotModel | None, limit: ReadLimit) -> Stretches | None:
     """Those of a Parquet file that move most; None where it is no longer than the limit. Raises LogError."""
     names: list[str] = []
 
@@ -70,7 +71,8 @@ def _stretches(path: Path, limit: ReadLimit) -> Stretches | None:
         return ["time"]
 
     time = _columns(path, limit, choose, [], strict=True)["time"]
-    return stretches_of(time, names, read, limit.longest)
+    sensors = [] if robot is None else [foot.wrench.name for foot in robot.feet.values()]
+    return stretches_of(time, names, read, sensors, limit.longest)
 
 
 def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array]:
