@@ -31,6 +31,13 @@ void a_short_probe_speaks() {
   check::that(watch.calm(), "what was said is forgotten");
 }
 
+// A probe that shows little may find any stiffness, but not one so far below zero: a sensor's sign, not a ground's.
+void a_probe_that_shows_little_may_be_sure() {
+  ChangeWatch watch;
+  check::that(probed(watch, -1.3, 2.0) == Verdict::usual, "below zero by less than noise makes");
+  check::that(probed(watch, -3.3, 2.0) == Verdict::impossible, "far below zero");
+}
+
 // After unclear probes, and after the first one of the change itself.
 void two_clear_probes_are_enough() {
   ChangeWatch watch;
@@ -103,6 +110,7 @@ void what_no_line_explains_is_no_ground() {
 
 int main() {
   a_short_probe_speaks();
+  a_probe_that_shows_little_may_be_sure();
   two_clear_probes_are_enough();
   steps_that_differ_become_usual();
   a_late_torque_is_no_other_ground();

@@ -31,6 +31,7 @@ constexpr double UNTOLD_DELAY = 0.03;    // s: deviation of how late torques may
 constexpr double OTHER_DAMPING = 0.05;   // s, times the stiffness: deviation of how much the damping may have changed
 constexpr double UNEXPLAINED = 10.0;     // times a row's usual noise: what is left is no noise
 constexpr double SURELY = 2.0;           // deviations
+constexpr double BEYOND_DOUBT = 6.0;     // deviations, of a probe that shows little: there are many
 constexpr double ROWS_ALIKE = 8.0;       // rows in a cycle of the filter: so many say the same
 constexpr double FIRST_SCATTER = 0.1;    // of the stiffness, before any probe
 constexpr double SCATTER_NEWS = 0.05;    // by how much one probe changes the usual scatter
@@ -73,7 +74,7 @@ class ChangeWatch {
     const Finding plain = found(in_time_, stiffness, noise), other = found(delayed_, stiffness, noise);
     drop();
     doubted_ = plain.left > std::max(UNEXPLAINED * noise, SHOWS * plain.shown) ||
-               (plain.own < SHOWS && plain.away + SURELY * plain.own < -1.0);
+               plain.away + (plain.own < SHOWS ? SURELY : BEYOND_DOUBT) * plain.own < -1.0;
     wary_ = doubted_ || (wary_ && plain.own > SHOWS);
     if (doubted_) return Verdict::impossible;
     if (std::max(plain.own, other.own) > SHOWS) return Verdict::usual;
