@@ -77,7 +77,9 @@ def test_a_log_with_gaps_shows_its_delay_in_every_run() -> None:
     residuals = newton_euler_residuals(twin, log := sweep.with_columns(dict(zip(names, late.T, strict=True))))
     assert [round(len(one.signals.positions) * log.period) for one in residuals] == [9, 9, 9, 9]
     apart = newton_euler_residuals(twin, replace(log, left_out=((9.0, 10.0),)))
-    assert len({one.pair.label for one in apart}) == 4  # hours may be left out: each may have a delay of its own
+    assert (
+        len({one.pair.label for one in apart}) == 4
+    )  # hours may be left out: each may have a delay of its own
     assert {one.pair.label for one in residuals} == {log.name}
     found = estimate_wrench_delay(twin, [log])
     assert abs(found.encoders) < 2 * found.encoders_std
