@@ -244,4 +244,51 @@ SENSOR_FAULTS = (
         "faults/joints/still_joints.py", "a spike is a motion", "MOST = (1.0, 99.0)", "MOST = (0.0, 100.0)",
         ("faults/joints/test_still_joints.py",),
     ),
+    Mutant(
+        "signals/slow_cosines.py", "the quickest of the slow cosines stays", "slowest * len(rows) * period) + 1",
+        "slowest * len(rows) * period)", ("signals/test_slow_cosines.py",),
+    ),
+    Mutant(
+        "signals/slow_cosines.py", "a constant stays in long signals", "spectrum[:, :count] = 0.0",
+        "spectrum[:, 1:count] = 0.0", ("signals/test_slow_cosines.py",),
+    ),
+    Mutant(
+        "sensors/delays/refined_delays.py", "delays that come and go are as sure as others",
+        "np.diag(own.covariance + own.through_time(balances))", "np.diag(own.covariance)",
+        ("estimation/delays/test_sensor_delays.py",),
+    ),
+    Mutant(
+        "faults/channels.py", "slow sensors lose frames", "again < 0.5 and longest", "longest",
+        ("faults/test_channels.py",),
+    ),
+    Mutant(
+        "sensors/newton_euler.py", "late encoders leave the feet's readings where they are",
+        "return np.asarray(predicted - np.sum(carried(transfers, loads.readings), axis=0))", "return predicted",
+        ("sensors/test_newton_euler.py",),
+    ),
+    Mutant(
+        "signals/gyroscope_delay.py", "noise makes slow turns look less late", "np.sum(change * turn)",
+        "np.sum(change * change)", ("signals/test_gyroscope_delay.py",),
+    ),
+    Mutant(
+        "signals/held.py", "a coarse channel is held", " or coarse(values)", "", ("signals/test_held.py",),
+    ),
+    Mutant(
+        "sensors/imu_filter.py", "logs that disagree show a filter", "mean.apart < AGREE", "True",
+        ("sensors/test_imu_filter.py",),
+    ),
+    Mutant(
+        "sensors/accelerometer_delay.py", "the gyroscope tells nothing of the accelerometer",
+        "gyroscope is not None and gyroscope.shown and gyroscope.late < LARGEST and std < np.inf", "False",
+        ("sensors/test_accelerometer_delay.py",),
+    ),
+    Mutant(
+        "sensors/accelerometer_delay.py", "an orientation drawn to its accelerometer passes for a late one",
+        "abs(gyroscope.late) + SURE * gyroscope.std < early / 2", "True", ("sensors/test_accelerometer_delay.py",),
+    ),
+    Mutant(
+        "sensors/accelerometer_delay.py", "a late orientation is taken for an early accelerometer",
+        "device_delay(told, ORIENTATION)", "(-device_delay(told)[0], device_delay(told)[1])",
+        ("sensors/test_accelerometer_delay.py",),
+    ),
 )  # fmt: skip

@@ -89,9 +89,9 @@ class JointWatch {
   bool frozen(double position, double velocity, double dt) noexcept {
     const bool stood = repeats_.stuck();
     repeats_.see(position, dt);
-    const double gone_now = begun_ ? std::abs(position - last_) : 0.0;
-    leapt_ = leap_ > std::max(LEAST_WAY, FLICKER * step_) && gone_now < leap_ / LEAP;
-    leap_ = stood ? gone_now : 0.0;
+    const double went = begun_ ? std::abs(position - last_) : 0.0;
+    leapt_ = leap_ > std::max(LEAST_WAY, FLICKER * step_) && went < leap_ / LEAP;
+    leap_ = stood ? went : 0.0;
     if (begun_ && position != last_) step_ = std::min(step_, std::abs(position - last_));
     way_ = begun_ && position == last_ ? way_ + std::abs(velocity) * dt : 0.0;
     if (begun_ && position != last_) dead_ = false;

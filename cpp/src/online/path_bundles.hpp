@@ -14,7 +14,7 @@ constexpr std::size_t MOST_LANES = 8;
 
 class PathBundles {
  public:
-  // Lists of lanes' instants, alike for every foot: this tick, and half a period before.
+  // One number at both instants that are worked out for every foot: this tick, and half a period before.
   struct Instants {
     double now, middle;
   };
