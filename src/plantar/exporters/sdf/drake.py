@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from plantar.conventions import rotation_from_rpy
+from plantar.conventions import AXES, rotation_from_rpy
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.poses import pose
-from plantar.exporters.sdf.target import insert_bushes
+from plantar.exporters.sdf.target import fixed_to_ankle, insert_bushes
 from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text
@@ -31,7 +32,10 @@ URI = "http://drake.mit.edu"  # the name space of Drake's own tags
 
 
 def write(job: Job, notes: Notes) -> str:
-    """The model with its feet on bushes, as text."""
+    """The model with its feet on bushes, as text.
+
+    Raises ExportError: no ankle, a model whose bush has other axes than the result.
+    """
     tree = insert_bushes(job, notes, springs=False, meshes=MESHES)
     ET.register_namespace("drake", URI)
     for foot in job.feet:
@@ -44,6 +48,12 @@ def write(job: Job, notes: Notes) -> str:
 
 
 def _bushing(tree: SdfTree, foot: FootBush) -> None:
+    free = [foot.joint(axis) for axis in AXES if foot.joint(axis) in tree.joints and not foot.spring(axis)]
+    if free:
+        message = (
+            f"has the bush of '{foot.name}' with {free[0]}, which the result has not: it would move freely"
+        )
+        raise ExportError(message, path=tree.path, valid="a model without bushes")
     frame_a = f"{foot.name}_bushing_A"
     for old in list(tree.model):
         ours = (
@@ -76,7 +86,8 @@ def _filter(tree: SdfTree, foot: FootBush) -> None:
     if any(e.get("name") == name for e in tree.model.findall(tag("collision_filter_group"))):
         return
     group = ET.SubElement(tree.model, tag("collision_filter_group"), name=name)
-    members = [foot.ankle, *(foot.link(spring.axis) for spring in foot.springs), *tree.parents(foot.ankle)]
+    above = fixed_to_ankle(tree, foot)[1]
+    members = [*above, *(foot.link(spring.axis) for spring in foot.springs), *tree.parents(foot.ankle)]
     for member in members:
         if member in tree.links:
             ET.SubElement(group, tag("member")).text = member
