@@ -3,7 +3,8 @@
 Drake's bushing acts between frame A on the ankle and frame C on the sole with torque constants in the order
 roll, pitch, yaw of `R_AC = Rz(yaw) Ry(pitch) Rx(roll)`, which at yaw 0 is plantar's own, and force constants
 x, y, z (drake.mit.edu, LinearBushingRollPitchYaw and the page on parsing multibody files). The joints keep
-x, y and yaw rigid; a collision filter group keeps ankle and sole apart.
+x, y and yaw rigid and have no effort, without which Drake makes no actuators of them; a collision filter group keeps
+ankle and sole apart.
 """
 
 from __future__ import annotations
@@ -39,12 +40,25 @@ def write(job: Job, notes: Notes) -> str:
     tree = insert_bushes(job, notes, springs=False, meshes=MESHES)
     ET.register_namespace("drake", URI)
     for foot in job.feet:
+        _unactuated(tree, foot)
         _bushing(tree, foot)
         _filter(tree, foot)
     if job.with_offset:
         text = "the bushing has no rest position: its frame on the ankle is tilted, exact for small angles"
         notes.info("export_offset", text)
     return to_text(tree.root, job.head("Drake", notes))
+
+
+def _unactuated(tree: SdfTree, foot: FootBush) -> None:
+    """No effort for the bush's joints: to any other Drake gives an actuator, and the plant's input grows by it."""
+    for spring in foot.springs:
+        axis = tree.joints[foot.joint(spring.axis)].find("axis")
+        assert axis is not None, "the joint's dynamics were looked for there"
+        limit = axis.find("limit")
+        limit = ET.SubElement(axis, "limit") if limit is None else limit
+        effort = limit.find("effort")
+        effort = ET.SubElement(limit, "effort") if effort is None else effort
+        effort.text = "0"
 
 
 def _bushing(tree: SdfTree, foot: FootBush) -> None:
