@@ -124,13 +124,9 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
                 "dead_channel", f"columns 'wrench.{sensor.name}.*': hold no value; the sensor is dead"
             )
             continue
-        # Along the bush's z axis, whatever way the sensor is mounted.
-        axis = (
-            (foot.bush.rotation.T @ foot.wrench.placement.rotation)[2]
-            if foot.bush.link == sensor.placement.link
-            else None
-        )
-        load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
+        # Along the bush's z axis, whatever way the sensor is mounted, in whatever link.
+        bush, placed = (robot.frame(each)[1].rotation for each in (foot.bush, sensor.placement))
+        load = wrench[:, :3] @ (bush.T @ placed)[2] * sensor.sign
         if not np.isfinite(load).any():
             text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together: the load is unknown"
             yield Finding("dead_channel", text)

@@ -170,7 +170,7 @@ def _reading_columns(
         contact = Contact(*robot.frame(foot.wrench.placement))
         transfer = equation.base_transfer(positions, contact)
         alone = np.zeros((2, 6, 6))
-        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(foot)]
+        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(robot, foot)]
         wrong = np.concatenate([alone, matrices]) @ wrench.T
         carried = np.asarray(transfer @ wrong.transpose(2, 1, 0)).transpose(2, 0, 1)
         for own, column in zip(gains, carried[:2], strict=True):
@@ -211,11 +211,10 @@ def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:
     return np.array(matrices), np.array(deviations)
 
 
-def _directions(foot: Foot) -> Array:
+def _directions(robot: RobotModel, foot: Foot) -> Array:
     """The bush's pitch and roll axes in the force sensor's frame, (2, 3)."""
-    same = foot.bush.link == foot.wrench.placement.link
-    turn = foot.wrench.placement.rotation.T @ foot.bush.rotation if same else np.eye(3)
-    return np.asarray(turn.T[[1, 0]])
+    sensor, bush = (robot.frame(each)[1].rotation for each in (foot.wrench.placement, foot.bush))
+    return np.asarray((bush.T @ sensor)[[1, 0]])
 
 
 def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResidual) -> tuple[Array, Array]:
