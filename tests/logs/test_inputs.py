@@ -49,6 +49,12 @@ def test_one_recording_under_two_names_is_refused(copy: MotionLog) -> None:
             check_names(logs)
 
 
+def test_recordings_that_overlap_by_more_than_half_of_the_shorter_are_one() -> None:
+    check_names([recording("one", slice(0, 400)), recording("two", slice(250, 600))])
+    with pytest.raises(DataError, match="hold the same recording, or most of one"):
+        check_names([recording("one", slice(0, 400)), recording("two", slice(150, 600))])
+
+
 def test_recordings_that_have_little_in_common_are_two() -> None:
     one = recording("one", slice(0, 320))
     check_names([one, recording("next", slice(300, 600)), recording("noisy", a=SIGNALS["a"] + 1e-9)])

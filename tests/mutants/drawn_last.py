@@ -71,8 +71,8 @@ DRAWN_LAST = (
     Mutant(
         "whole_body/equations.py",
         "viscous friction in a spring's unit",
-        '"viscous": "N.m.s/rad"',
-        '"viscous": "N.m/rad"',
+        '"viscous": ("N.m.s/rad", ',
+        '"viscous": ("N.m/rad", ',
         ("whole_body/test_equations.py",),
     ),
     Mutant(
