@@ -207,7 +207,7 @@ def test_what_cannot_serve_is_refused_in_one_line(arm: RobotModel, real: pin.Mod
     with pytest.raises(DataError, match="no joint positions"):
         identify_joints(arm, [MotionLog("one", log.time, {})])
     with pytest.raises((DataError, LogError), match=r"effort"):
-        identify_joints(arm, [log], [MotionLog("two", log.time, silent)])
+        identify_joints(arm, [record(arm, real, "other", 7)], [MotionLog("two", log.time, silent)])
     with pytest.raises(DataError, match="at least one"):
         identify_joints(arm, [])
 
