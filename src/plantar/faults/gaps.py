@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.conventions import Mask
-from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
+from plantar.logs.motion_log import MotionLog, device_of, imu_columns, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 from plantar.signals.dropouts import dropouts_of
@@ -28,9 +28,7 @@ def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if not needed.isdisjoint(columns):
             first = int(np.flatnonzero(mask)[0])
             single = len(columns) == 1
-            where = (
-                f"column '{columns[0]}'" if single else f"columns '{'.'.join(columns[0].split('.')[:2])}.*'"
-            )
+            where = f"column '{columns[0]}'" if single else f"columns '{device_of(columns[0])}.*'"
             text = (
                 f"{where}, t = {log.time[first]:g} s, value 0: {'reads' if single else 'read'} exactly 0 between jumps "
                 f"in {len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the sensor "

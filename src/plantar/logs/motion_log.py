@@ -40,6 +40,12 @@ def wrench_columns(sensor: str) -> tuple[str, ...]:
     return tuple(f"wrench.{sensor}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
 
 
+def device_of(column: str) -> str:
+    """The IMU or force sensor that a column is of, with its kind: `wrench.left` of `wrench.left.force.x`; names may
+    hold dots."""
+    return column.rsplit(".", 2)[0]
+
+
 HARMLESS = 3  # names of joints that no foot needs: more of them only fill the screen
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, device_of
 from plantar.notes import Note, Severity
 from plantar.signals.footfalls import footfalls
 
@@ -79,10 +79,9 @@ def _landings(log: MotionLog) -> Mask:
     """Samples (N,) around those at which a foot lands or leaves: the sole's edge knocks there, on every sensor."""
     around = np.zeros(len(log), dtype=bool)
     reach = max(1, round(GROUP_GAP / log.period))
-    for sensor in {
-        name[len("wrench.") :].rsplit(".", 2)[0] for name in log.columns if name.startswith("wrench.")
-    }:
-        for change in footfalls(log, sensor):
+    sensors = {device_of(name) for name in log.columns if name.startswith("wrench.")}
+    for sensor in sensors:
+        for change in footfalls(log, sensor.removeprefix("wrench.")):
             around[max(0, change - reach) : change + reach + 2] = True
     return around
 
