@@ -11,6 +11,7 @@ import pyarrow.parquet as pa_parquet
 import pytest
 
 from biped import record, sway
+from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name, open_log
@@ -101,6 +102,16 @@ def test_columns_may_stand_in_any_order_and_have_windows_ends(tmp_path: Path) ->
 
 def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path: Path) -> None:
     assert len(open_log(write(tmp_path, b"\xef\xbb\xbf" + csv_text().encode()))) == 5
+
+
+def test_nanoseconds_since_1970_are_numbers(tmp_path: Path) -> None:
+    """As pandas and bags stamp samples: more digits than a float64 has, which is no fault of the file."""
+    stamps = np.int64(1_700_000_000_123_456_789) + 10_000_000 * np.arange(5)
+    angles = {"joint.a.position": np.arange(5.0)}
+    pa_parquet.write_table(pa.table({"stamp": stamps, **angles}), tmp_path / "log.parquet")
+    robot = make_robot(tmp_path / "robot", columns={"time": {"from": "stamp", "unit": "ns"}})
+    log = open_log(tmp_path / "log.parquet", robot)
+    np.testing.assert_allclose(log.time - 1.7e9, 0.123456789 + 0.01 * np.arange(5), atol=1e-6)
 
 
 @pytest.mark.parametrize("hole", ["", "nan", "NaN", "null"])
