@@ -141,6 +141,16 @@ def test_a_text_among_ignored_columns_does_no_harm(tmp_path: Path) -> None:
     np.testing.assert_array_equal(log.column("joint.a.position"), [1, 2])
 
 
+@pytest.mark.parametrize("more", [",,", ",x,x", ",,x,x,x"])
+def test_what_is_not_read_may_stand_twice(tmp_path: Path, more: str) -> None:
+    """Spreadsheets end lines with commas, and loggers have columns of one name."""
+    lines = csv_text().splitlines()
+    text = "\n".join([lines[0] + more, *(line + "," * more.count(",") for line in lines[1:])]) + "\n"
+    log = open_log(write(tmp_path, text))
+    assert list(log.columns) == HEADER.split(",")[1:]
+    assert [note.text.count("\0") for note in log.notes] == [0]
+
+
 def test_missing_duplicate_and_texty_columns(tmp_path: Path) -> None:
     assert "column 'time': is missing: the header begins with 't' (valid: a first column" in refusal(
         tmp_path, "t,joint.a.position\n0,1\n0.1,2\n"
