@@ -197,7 +197,10 @@ def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Ar
         return table[names[source]]
     if not isinstance(source, str) or source not in table:
         raise LogError(
-            f"is missing (columns.{key})", path=path, column=str(source), valid=nearest(str(source), names)
+            f"is missing, or holds a text or nothing (columns.{key})",
+            path=path,
+            column=str(source),
+            valid=f"numbers in one of {nearest(str(source), names)}",
         )
     return table[source]
 
