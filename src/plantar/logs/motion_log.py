@@ -201,6 +201,19 @@ class MotionLog:
             if names
         )  # fmt: skip
 
+    def without_empty_joints(self) -> MotionLog:
+        """The same without positions of joints that never hold a value: these were not recorded, and would empty every
+        row of what follows from all joints."""
+        positions = [
+            name for name in self.columns if name.startswith("joint.") and name.endswith(".position")
+        ]
+        empty = [name for name in positions if np.isnan(self.columns[name]).all()]
+        if not empty:
+            return self
+        text = f"{self.name}: never hold a value, taken as not recorded: {listing(empty, HARMLESS)}"
+        columns = {name: values for name, values in self.columns.items() if name not in set(empty)}
+        return replace(self, columns=columns, notes=(*self.notes, Note("joint_empty", "info", text)))
+
     def select(self, rows: slice | Mask) -> MotionLog:
         """The same recording with only some of its rows."""
         columns = {name: values[rows] for name, values in self.columns.items()}

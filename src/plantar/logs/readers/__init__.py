@@ -81,7 +81,7 @@ def open_log(
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
         log = reader(path, robot, ReadLimit(path, memory, longest=longest))
-    return of_robot(log, robot)
+    return of_robot(log.without_empty_joints(), robot)
 
 
 def of_robot(log: MotionLog, robot: RobotModel | None) -> MotionLog:
