@@ -43,6 +43,24 @@ def test_a_map_that_cannot_hold_is_one_clear_line(
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("columns", "where"),
+    [
+        ({"joints": ["a", "b", "a"]}, "columns.joints names a joint twice"),
+        (
+            {"ports": {"sh_q": {"role": "joints.position", "joints": ["b", "b", "a"]}}},
+            "columns.ports.sh_q.joints",
+        ),
+    ],
+)
+def test_a_joint_that_is_named_twice_is_refused(
+    columns: dict[str, object], where: str, tmp_path: Path
+) -> None:
+    (tmp_path / "walk.sh_q").write_text("0.0 1 2 3\n0.1 1 2 3\n0.2 1 2 3\n")
+    with pytest.raises(LogError, match=where):
+        open_log(tmp_path / "walk.sh_q", make_robot(tmp_path / "robot", columns=columns))
+
+
 @pytest.mark.parametrize("cell", ["--", ""])
 def test_a_column_that_is_there_but_holds_no_numbers_is_not_called_missing_alone(
     cell: str, tmp_path: Path
