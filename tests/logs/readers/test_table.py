@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import os
 from pathlib import Path
 
 import numpy as np
@@ -302,6 +303,17 @@ def test_unknown_endings_and_missing_files(tmp_path: Path) -> None:
     folder.mkdir()
     with pytest.raises(LogError, match=r"folder\.csv"):
         open_log(folder)
+
+
+def test_a_name_that_is_no_text_is_refused_before_any_work(tmp_path: Path) -> None:
+    """As archives from other systems leave them; results, which name motions by files, could not be written."""
+    path = tmp_path / os.fsdecode(b"sway_\xe9.csv")
+    path.write_text(csv_text())
+    with pytest.raises(LogError, match=r"sway_\\udce9\.csv': has a name that is no text") as caught:
+        open_log(path)
+    assert str(caught.value).isascii()
+    fine = open_log(path.rename(tmp_path / "sw\u00e9 y\u00a0\u6447.csv"))
+    assert fine.name == "sw\u00e9 y\u00a0\u6447"
 
 
 def test_motions_are_named_by_files() -> None:

@@ -75,6 +75,9 @@ def open_log(
         robot = load_robot(robot)
     if not os.path.exists(path):
         raise LogError("does not exist", path=path)
+    path = path if path.name not in ("", "..") else path.resolve()  # '.' is a bag's folder as well
+    if str(path).encode(errors="replace").decode() != str(path):  # results name it, and are text
+        raise LogError("has a name that is no text", path=ascii(str(path)), valid="a name in UTF-8")
     if path.is_file() and path.stat().st_size == 0:
         raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
     module = _module(path, robot)
