@@ -207,6 +207,25 @@ def test_a_topic_of_another_kind_is_refused(original: MotionLog, tmp_path: Path)
         open_log(tmp_path / "log.mcap", robot)
 
 
+def test_bags_that_lie_in_one_folder_are_joined_with_a_warning(original: MotionLog, tmp_path: Path) -> None:
+    """Two recordings are no parts of one, as ROS 2 names them beside the parts."""
+    save_log(original, tmp_path / "bags" / "walk_1.mcap")
+    later = MotionLog("later", original.time + 100.0, original.columns)
+    save_log(later, tmp_path / "bags" / "walk_2.mcap")
+    (note,) = (note for note in open_log(tmp_path / "bags").notes if note.code == "bags_joined")
+    assert "its 2 files are read as one recording: walk_1.mcap, walk_2.mcap" in note.text
+    (tmp_path / "bags" / "metadata.yaml").touch()
+    assert "bags_joined" not in {note.code for note in open_log(tmp_path / "bags").notes}
+
+
+def test_the_folder_that_one_stands_in_has_its_name(
+    original: MotionLog, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save_log(original, tmp_path / "sway" / "part_0.mcap")
+    monkeypatch.chdir(tmp_path / "sway")
+    assert open_log(".").name == "sway"
+
+
 def test_a_ros1_bag_that_was_never_closed(original: MotionLog, tmp_path: Path) -> None:
     path, _ = write_ros1(original, tmp_path)
     content = path.read_bytes()

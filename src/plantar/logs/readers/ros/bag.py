@@ -22,12 +22,13 @@ from plantar.logs.readers.ros.sensor_topics import assign
 from plantar.logs.readers.ros.sqlite_bag import read_sqlite
 from plantar.logs.readers.ros.topics import Series, Topic
 from plantar.logs.readers.streams import Stream, merge
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 FILES = (".mcap", ".db3", ".bag", ".active")  # .bag.active: a ROS 1 bag that was never closed
+METADATA = "metadata.yaml"  # that ROS 2 writes beside the parts of one bag
 NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
 
 
@@ -53,7 +54,12 @@ def bag_topics(path: Path) -> dict[str, list[Topic]]:
 
 def _topics(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Topic]:
     topics: dict[str, Topic] = {}
-    for file in bag_files(path):
+    files = bag_files(path)
+    if len(files) > 1 and not (path / METADATA).exists():
+        names = listing([file.name for file in files])
+        text = f"{path.name}: a folder without {METADATA}; its {len(files)} files are read as one recording: {names}"
+        notes.append(Note("bags_joined", "warning", f"{text} (valid: one by one, if each is its own)"))
+    for file in files:
         reader = {".mcap": read_mcap, ".db3": read_sqlite}.get(file.suffix.lower(), read_ros1)
         reader(file, topics, limit, notes)
     return topics
