@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import log_bags
 from biped import record, sway
 from biped_robot import make_robot
 from log_formats import write_mcap, write_ros1
@@ -244,8 +245,6 @@ def test_without_a_robot_sensors_go_by_their_topics(original: MotionLog, tmp_pat
 
 def test_stamps_that_are_not_set_fall_back_to_times_of_receipt(original: MotionLog, tmp_path: Path) -> None:
     pytest.importorskip("rosbags")
-    import log_bags
-
     real = log_bags.ros_messages
 
     def without_stamps(log, store, ros1):  # type: ignore[no-untyped-def]
@@ -261,6 +260,29 @@ def test_stamps_that_are_not_set_fall_back_to_times_of_receipt(original: MotionL
     log = open_log(path)
     assert "receive_time" in {note.code for note in log.notes}
     np.testing.assert_allclose(log.time, original.time, atol=1e-8)
+
+
+@pytest.mark.parametrize(("behind", "told"), [(0.02, False), (1.5, True)])
+def test_a_sensor_on_a_clock_of_its_own_is_told(
+    behind: float, told: bool, original: MotionLog, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its header says another time than all others' when they are received together."""
+    real = log_bags.ros_messages
+
+    def of_another_computer(log, store, ros1):  # type: ignore[no-untyped-def]
+        for topic, kind, stamp, message in real(log, store, ros1):
+            if topic == "/sensors/torso/imu":
+                earlier = stamp + 10**10 - round(1e9 * behind)
+                message.header.stamp.sec, message.header.stamp.nanosec = divmod(earlier, 10**9)
+            else:
+                message.header.stamp.sec += 10
+            yield topic, kind, stamp + 10**10, message
+
+    monkeypatch.setattr(log_bags, "ros_messages", of_another_computer)
+    path, _ = write_ros1(original, tmp_path)
+    notes = [note.text for note in open_log(path).notes if note.code == "clocks_apart"]
+    assert bool(notes) == told
+    assert all("stamps of /sensors/torso/imu are 1.5 s older" in text for text in notes)
 
 
 def test_an_imu_without_attitude_has_no_such_columns(original: MotionLog, tmp_path: Path) -> None:
