@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.conventions import Mask
+from plantar.errors import clock
 from plantar.logs.motion_log import MotionLog, device_of, imu_columns, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
@@ -30,9 +31,9 @@ def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             single = len(columns) == 1
             where = f"column '{columns[0]}'" if single else f"columns '{device_of(columns[0])}.*'"
             text = (
-                f"{where}, t = {log.time[first]:g} s, value 0: {'reads' if single else 'read'} exactly 0 between jumps "
-                f"in {len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the sensor "
-                "lose its connection? (valid: leave such cells empty)"
+                f"{where}, t = {clock(log.time[first])} s, value 0: {'reads' if single else 'read'} exactly 0 between "
+                f"jumps in {len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the "
+                "sensor lose its connection? (valid: leave such cells empty)"
             )
             yield Finding("dropout", text)
     gaps = [(start, end, "rows") for start, end in sampling(log).gaps]
@@ -46,7 +47,7 @@ def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if lost > LEAST_LOST * lasts:
         start, end, _ = max(gaps, key=lambda gap: gap[1] - gap[0])
         what = " and ".join(sorted({what for _, _, what in gaps}))
-        text = f"{what}: {len(gaps)} gap{'s' * (len(gaps) > 1)}, the longest from t = {start:g} to {end:g} s"
+        text = f"{what}: {len(gaps)} gap{'s' * (len(gaps) > 1)}, the longest from t = {clock(start)} to {clock(end)} s"
         told = f"{text}, {100 * lost / lasts:.0f} % of the log: left out, and the delay is less well known"
         yield Finding("gaps", f"{told} (valid: every sensor at every time)")
 

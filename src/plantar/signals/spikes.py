@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
+from plantar.errors import clock
 from plantar.logs.motion_log import MotionLog, device_of
 from plantar.notes import Note, Severity
 from plantar.signals.footfalls import footfalls
@@ -50,7 +51,7 @@ def without_spikes(log: MotionLog) -> MotionLog:
         bridged[name] = column.copy()
         bridged[name][places] = np.interp(places, place[fine], column[fine])
         first = int(places[0])
-        told.append(f"{name} ({places.size}, first at t = {log.time[first]:g} s: {column[first]:.4g})")
+        told.append(f"{name} ({places.size}, first at t = {clock(log.time[first])} s: {column[first]:.4g})")
     more = f" and {len(told) - 3} more columns" if len(told) > 3 else ""
     text = f"{log.name}: lone samples far from their neighbours bridged: {', '.join(told[:3])}{more}"
     severity: Severity = "warning" if max(map(len, spikes.values())) > SERIOUS * len(log) else "info"
