@@ -96,8 +96,8 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
     if received := reason is not None:
         text = f"{path.name}: {reason}; times of receipt are used instead"
         notes.append(Note("receive_time", "warning", text))
-    elif (text := _clocks_apart(sources)) is not None:
-        notes.append(Note("clocks_apart", "warning", f"{path.name}: {text}"))
+    elif (apart := _clocks_apart(sources)) is not None:
+        notes.append(Note("clocks_apart", "warning", f"{path.name}: {apart}"))
     first = min(int(series.clock(received).min()) for _, series in sources)
     zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
     if zero:
