@@ -152,16 +152,18 @@ def _fits(
         fits = over_cores(
             lambda axis, own: (
                 why := dict[Axis, str](),
-                gives_up(axis, why)(fit_axis)(
-                    ready.fitted,
-                    foot,
-                    axis,
-                    ready.settings,
-                    None,
-                    own,
-                    timed,
-                    found.get(axis, before.get(axis)),
-                ),
+                gives_up(axis, why)(
+                    lambda: fit_axis(
+                        ready.fitted,
+                        foot,
+                        axis,
+                        ready.settings,
+                        None,
+                        own,
+                        timed,
+                        found.get(axis, before.get(axis)),
+                    )
+                )(),
             ),
             left,
             left.values(),
