@@ -163,6 +163,23 @@ def link_names(model: pin.Model) -> tuple[str, ...]:
 
 
 def model_parameters(model: pin.Model) -> Array:
-    """The inertial parameters that a model's links have, (10 n_links,), in Pinocchio's order."""
+    """The inertial parameters of a model's links.
+
+    Args:
+        model: the robot.
+
+    Returns:
+        (10 n_links,) in Pinocchio's order: m [kg], m·c [kg·m], Ixx Ixy Iyy Ixz Iyz Izz about the joint frame [kg·m²].
+
+    Raises:
+        Nothing.
+
+    Example:
+        >>> import pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model = pin.buildSampleModelManipulator()
+        >>> dynamics.model_parameters(model).shape == (10 * (model.njoints - 1),)
+        True
+    """
     parameters = [inertia.toDynamicParameters() for inertia in list(model.inertias)[1:]]
     return np.concatenate(parameters) if parameters else np.zeros(0)
