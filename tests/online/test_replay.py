@@ -78,7 +78,7 @@ def test_a_number_may_be_used_once_it_is_known_within_a_tenth(name: str) -> None
     assert judged(10.1).value is None
     near, far = judged(0.05), judged(0.4)
     assert near.reason == ""
-    assert f"± 40 % so far; known from ± {100 * most:.0f} % on" in far.reason
+    assert f"± 40 % so far; enough from ± {100 * most:.0f} % on" in far.reason
     assert far.value is not None
     assert far.interval95 is not None
     if name == "z":
