@@ -57,6 +57,20 @@ def test_points_add_up_to_the_springs_and_dampers_asked_for(foot: PointFoot) -> 
         assert min(sides) < 0 < max(sides)
 
 
+@pytest.mark.parametrize(
+    ("pitch", "roll", "length", "width"),
+    [(1.0, 1.0, 1.0, 1.0), (1.0, 2.0, 1.0, np.sqrt(2)), (2.0, 1.0, np.sqrt(2), 1.0), (1.0, 3.0, 1.0, 1.5)],
+)
+def test_points_stand_outside_the_sole_only_as_far_as_its_shape_asks_for(
+    pitch: float, roll: float, length: float, width: float
+) -> None:
+    """Springs at the corners hold K of pitch and roll as the squares of the sole's sides: 0.13·0.09 and 0.06·0.05."""
+    stiffness: dict[Axis, float] = {"pitch": 40e3 * 0.13 * 0.09 * pitch, "roll": 40e3 * 0.06 * 0.05 * roll}
+    found = points_for(stiffness, {"pitch": 15.0, "roll": 15.0}, sides_of(FOOT), 0.1, WEIGHT, 0.2)
+    assert max(p.x for p in found.points) == pytest.approx(0.13 * length)
+    assert max(p.y for p in found.points) == pytest.approx(0.06 * width)
+
+
 @pytest.mark.parametrize("load", [0.1 * WEIGHT, 0.5 * WEIGHT, WEIGHT])
 def test_a_load_is_carried_by_what_touches(foot: PointFoot, load: float) -> None:
     """Below the share that edges carry alone the middle point does not touch."""

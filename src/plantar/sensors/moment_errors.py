@@ -10,7 +10,8 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.dynamics import Contact, Equation, equation_of
+from plantar.dynamics import Contact, Equation
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
