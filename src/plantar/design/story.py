@@ -42,8 +42,8 @@ TIPS: Final = 0.0005
 SPARE: Final = 0.005  # less than what is just allowed
 # Where the ends of the range hold with more room than foretold, as rubber that slips stands beside the springs, a limit
 # may be used until a rehearsal would take up so much; by so much more at most, and none for less than WORTH.
-TAKEN: Final = 0.9
-LARGER: Final = 1.15
+TAKEN: Final = 0.94
+LARGER: Final = 1.3
 WORTH: Final = 1.05
 BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
 ROUNDS: Final = 12
