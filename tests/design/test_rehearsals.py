@@ -72,46 +72,6 @@ def test_what_failed_far_from_a_limit_is_held_to_less_than_it_used() -> None:
     assert motion.shares[:, KINDS.index("bend")] == pytest.approx(0.85 * 0.4), "by as much as a step may"
 
 
-def test_where_both_ends_leave_room_a_limit_may_be_used_further_once() -> None:
-    """Of 44.5 mm that may be used to the sides 35 are at the stiff end, where 87 % were foretold: as much more as takes
-    94 % of them. What uses little of a limit otherwise may do so by 1.3 times at most."""
-    motion = attempt()
-    ends = [replace(FREE, factor=0.5), replace(FREE, factor=2.0, sole_margins=(0.04, 0.015))]
-    rehearsed(motion, ends[0])
-    assert not motion.grow(), "the other end first"
-    rehearsed(motion, *ends)
-    assert motion.grow()
-    more = 0.94 * LEFT / ((0.05 - 0.015) / (0.05 - KEPT))
-    assert LEFT < more < 1.3 * LEFT
-    sides = KINDS.index("sides")
-    assert motion.shares[:, sides] == pytest.approx([1.3 * LEFT, np.sqrt(1.3 * LEFT * more), more])
-    assert np.delete(motion.shares, sides, axis=1) == pytest.approx(1.3 * LEFT)
-    assert not motion.rehearsals, "another motion"
-    rehearsed(motion, *ends)
-    assert not motion.grow(), "once"
-
-
-def test_a_motion_that_takes_up_what_was_foretold_or_is_held_by_other_limits_stays_as_it_is() -> None:
-    near = 0.05 - 0.9 * (0.05 - KEPT)
-    full = {
-        "sole_margins": (near, near),
-        "friction": 0.9 * FRICTION,
-        "least_load": 1 - 0.9 * (1 - LIFT),
-        "bend": 0.9 * BEND,
-    }
-    held = attempt()
-    rehearsed(held, *(replace(FREE, factor=each, **full) for each in (0.5, 2.0)))
-    assert not held.grow()
-    idle = attempt(0.5)
-    rehearsed(idle, *(replace(FREE, factor=each) for each in (0.5, 2.0)))
-    assert not idle.grow()
-    shrunk = attempt()
-    rehearsed(shrunk, replace(FREE, factor=0.5), replace(FREE, factor=2.0, friction=1.1 * FRICTION))
-    shrunk.adapt()
-    rehearsed(shrunk, *(replace(FREE, factor=each) for each in (0.5, 2.0)))
-    assert not shrunk.grow(), "what did not hold once"
-
-
 def test_the_ends_come_first_then_what_did_not_hold_and_all_hold_in_the_end() -> None:
     played: list[tuple[list[float], np.ndarray]] = []
 

@@ -17,7 +17,7 @@ from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.reach import BEND, FRICTION, KINDS, LIFT, NEAR, Reach
+from plantar.design.reach import BEND, FRICTION, KINDS, LIFT, Reach
 from plantar.design.rehearsal import Rehearsal, rehearse
 from plantar.design.search import best_motion, better_motion
 from plantar.design.soft_feet import CARRIED, Softness
@@ -40,11 +40,6 @@ SMALLER: Final = 0.85
 # much too large a motion is: its limit is held to as much less as it may.
 TIPS: Final = 0.0005
 SPARE: Final = 0.005  # less than what is just allowed
-# Where the ends of the range hold with more room than foretold, as rubber that slips stands beside the springs, a limit
-# may be used until a rehearsal would take up so much; by so much more at most, and none for less than WORTH.
-TAKEN: Final = 0.94
-LARGER: Final = 1.3
-WORTH: Final = 1.05
 BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
 ROUNDS: Final = 12
 EFFORT: Final = 0.9  # of a joint's torque limit
@@ -219,7 +214,6 @@ class _Attempt:
         init=False
     )  # factors of the stiffness at which it is rehearsed before the others
     rehearsals: dict[float, Rehearsal] = field(default_factory=dict)  # of the motion as it is, by factor
-    changed: bool = False  # its limits, after a rehearsal
 
     def __post_init__(self) -> None:
         self.shares = np.full((len(self.factors), len(KINDS)), LEFT)
@@ -227,7 +221,6 @@ class _Attempt:
 
     def search_on(self) -> None:
         """Within the limits as they are now."""
-        self.changed = True
         within = self.reach.held(self.shares, self.others, self.still)
         self.coefficients, self.rehearsals = self.better(within, self.coefficients), {}
 
@@ -245,44 +238,21 @@ class _Attempt:
         self.search_on()
         return True
 
-    def grow(self) -> bool:
-        """Search on within wider limits where both ends of the range leave room, before the others are rehearsed.
-        False: nothing changed, as there is none or limits were changed before."""
-        if self.changed or not set(self.first) <= self.rehearsals.keys():
-            return False
-        rows, used, foretold = self._taken()
-        change = np.clip(TAKEN * foretold / np.maximum(used, 1e-9) / self.shares[rows], 1.0, LARGER)
-        if change[foretold > NEAR * self.shares[rows]].max(initial=1.0) < WORTH:
-            return False
-        self._change(rows, change)
-        self.search_on()
-        return True
-
     def adapt(self) -> None:
         """Search on within limits as rehearsals found them: what used too much may use less."""
-        rows, used, foretold = self._taken()
-        shares = self.shares[rows]
+        rows = [self.factors.index(factor) for factor in self.rehearsals]
+        used = np.array([_used(one)[0] for one in self.rehearsals.values()])
+        foretold, shares = self.reach.used_by_kind(self.coefficients)[rows], self.shares[rows]
         change = np.clip((1 - SPARE) / np.sqrt(np.maximum(used, 1.0)), SMALLER, 1.0)
         change[used <= 1] = 1.0
         self.first = [factor for factor, own in zip(self.rehearsals, used, strict=True) if own.max() > 1]
-        self._change(rows, change)
-        # What failed far from its limit is held to less than it used.
-        self.shares[rows] = np.where(used > 1, change * np.minimum(shares, foretold), shares)
-        self.search_on()
-
-    def _taken(self) -> tuple[list[int], Array, Array]:
-        """Rows of the factors that were rehearsed, and how much of the KINDS of limits these took up and were foretold
-        to, (rows, KINDS) each."""
-        rows = [self.factors.index(factor) for factor in self.rehearsals]
-        used = np.array([_used(one)[0] for one in self.rehearsals.values()])
-        return rows, used, self.reach.used_by_kind(self.coefficients)[rows]
-
-    def _change(self, rows: list[int], change: Array) -> None:
-        """Change the shares of some rows; what lies between is held to shares between."""
+        # What lies between is held to shares between; what failed far from its limit is held to less than it used.
         order = np.argsort(rows)
         places = np.log(self.factors)
         for kind, own in enumerate(np.log(change[order]).T):
             self.shares[:, kind] *= np.exp(np.interp(places, places[np.array(rows)[order]], own))
+        self.shares[rows] = np.where(used > 1, change * np.minimum(shares, foretold), shares)
+        self.search_on()
 
     def next_factors(self) -> list[float]:
         """At which stiffness to rehearse next."""
@@ -320,18 +290,14 @@ def _rehearsed(
             if not quiet:
                 motion.shrink()
             continue
-        plan, used, larger = trajectory.plan(), 0.0, False
-        while used <= 1.0 and not larger and (asked := motion.next_factors()):
+        plan, used = trajectory.plan(), 0.0
+        while used <= 1.0 and (asked := motion.next_factors()):
             found = rehearse(robot, plan, told, asked, progress)
             used, reason = max(((float(each.max()), why) for each, why in map(_used, found)))
             motion.rehearsals |= {one.factor: one for one in found}
-            larger = used <= 1.0 and motion.grow()
         if used > 1.0:
             progress(f"smaller: {reason}")
             motion.adapt()
-        if larger:
-            progress("larger: both ends of the range leave room")
-        if used > 1.0 or larger:
             continue
         progress("identify the feet from the rehearsals")
         rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in motion.factors])
