@@ -86,6 +86,10 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
         off = [abs(one["error_percent"]) for one in row["at"] if one["error_percent"] is not None]
         assert row["error95_percent"] is None or row["error95_percent"] > 0.99 * max(off, default=0.0)
     assert "holds from 250 to 1000 N·m/rad" in page
+    assert content["right_foot_ahead"] == {"value": 0.0, "unit": "m"}
+    assert "placed as in that row, side by side." in page
+    stepped = sheet(content | {"right_foot_ahead": {"value": 0.048, "unit": "m"}}, approach=False)
+    assert "placed as in that row, the right one 48 mm ahead of the left one." in stepped
     assert "25 % and 50 %" in page
     needed = content["one_foot"]["least_stiffness"]
     assert needed == pytest.approx(2 * content["least_stiffness"])
