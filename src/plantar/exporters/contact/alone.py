@@ -80,7 +80,7 @@ def standing_stiffness(foot: PointFoot, axis: Axis, load: float, step: float, sh
 
 @lru_cache(maxsize=512)
 def measured(foot: PointFoot, axis: Axis, load: float, step: float) -> Measured:
-    """K as `standing_stiffness` says, and C of how the foot follows a swing, both at `MARKED` of what its points touch."""
+    """K as `standing_stiffness` says and C of how the foot follows a swing, at the share `MARKED`."""
     held = standing_stiffness(foot, axis, load, step, MARKED)
     if not np.isfinite(held):
         return Measured(np.nan, np.nan)
