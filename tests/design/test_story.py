@@ -144,7 +144,7 @@ def test_controllers_files_hold_the_same_motion(written: Path) -> None:
     q, joints = positions(written), list(hrp2.robot().joint_names)
     pos = np.loadtxt(written.with_suffix(".pos"))
     assert pos[:, 0] == pytest.approx(np.arange(2001) / 100)
-    assert pos[:, 1:] == pytest.approx(q, abs=1e-6)
+    np.testing.assert_allclose(pos[:, 1:], q, rtol=1e-6, atol=1e-6)
     ros = yaml.load(written.with_suffix(".yaml").read_text(), yaml.CSafeLoader)
     assert ros["joint_names"] == joints
     point = ros["points"][1234]
@@ -176,7 +176,7 @@ def test_the_twin_plays_a_table_from_where_its_first_row_stands(written: Path) -
     plan = own_plan(written, hrp2.robot())
     own = design_samples.designed().trajectory().plan()
     assert plan.time == pytest.approx(own.time)
-    assert plan.positions == pytest.approx(own.positions, abs=1e-4)
+    np.testing.assert_allclose(plan.positions, own.positions, rtol=1e-6, atol=1e-4)
     assert plan.base[0][2] == pytest.approx(own.base[0][2], abs=1e-5)
     assert plan.standing == {"left", "right"}
 

@@ -144,10 +144,14 @@ def test_what_a_foot_alone_shows_is_checked_over_loads_steps_and_angles(
 ) -> None:
     """K is 4 % off at each load, C 10 %, 20 % at steps of 2 ms; far out K is 30 % off."""
 
-    def shown(_: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
-        k = 0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04
-        return Measured(k * STIFFNESS[axis], (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+    def stands(_: PointFoot, axis: Axis, load: float, step: float, share: float) -> float:
+        return (0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04) * STIFFNESS[axis]
 
+    def shown(foot: PointFoot, axis: Axis, load: float, step: float) -> Measured:
+        held = stands(foot, axis, load, step, MARKED)
+        return Measured(held, (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+
+    monkeypatch.setattr(fit, "standing_stiffness", stands)
     monkeypatch.setattr(fit, "measured", shown)
     found = fit._check(foot, "pitch", STIFFNESS["pitch"], DAMPING["pitch"], WEIGHT)
     assert (found.stiffness_error, found.damping_error) == pytest.approx((0.04, 0.1))
