@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from os import cpu_count
+from typing import Any
 
 import numpy as np
 
@@ -80,13 +81,13 @@ def look_at(robot: RobotModel, timed: bool, log: MotionLog) -> FirstLook:
     """What one `checked` log tells; `timed` as in `looked_at`."""
     gyroscope = None if robot.imu is None else log_gyroscope_delay(log, robot.imu.name)
     late = gyroscope is not None and gyroscope.shown
-    return FirstLook(
-        log,
-        gyroscope,
-        accelerometer_delay(robot, log),
-        _tilt(robot, log),
-        _as_recorded(robot, log) if timed and not late else None,
-    )
+    asked: list[Callable[[], Any]] = [
+        lambda: _as_recorded(robot, log) if timed and not late else None,
+        lambda: (accelerometer_delay(robot, log), _tilt(robot, log)),
+    ]
+    with over_logs([log]) as each:  # as long as each other: cores share them, also of a single log
+        residuals, (accelerometer, tilt) = each(lambda ask: ask(), asked)
+    return FirstLook(log, gyroscope, accelerometer, tilt, residuals)
 
 
 def look_again(robot: RobotModel, timed: bool, look: FirstLook, log: MotionLog) -> FirstLook:
