@@ -85,7 +85,8 @@ def look_at(robot: RobotModel, timed: bool, log: MotionLog) -> FirstLook:
         lambda: _as_recorded(robot, log) if timed and not late else None,
         lambda: (accelerometer_delay(robot, log), _tilt(robot, log)),
     ]
-    with over_logs([log]) as each:  # as long as each other: cores share them, also of a single log
+    with ThreadPoolExecutor(len(asked)) as pool:  # of a long log each takes a while
+        each = pool.map if len(log) > LONG else map
         residuals, (accelerometer, tilt) = each(lambda ask: ask(), asked)
     return FirstLook(log, gyroscope, accelerometer, tilt, residuals)
 
