@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import os
 from pathlib import Path
+from threading import Barrier
 
 import numpy as np
 import pyarrow as pa
@@ -79,19 +80,27 @@ def test_parquet_is_read_a_column_for_each_core_at_a_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All columns at once would take as much memory as their numbers, and one leaves cores idle."""
-    table, asked = pa.table({"time": [0.0, 0.1], **{f"joint.{x}.position": [1.0, 2.0] for x in "abcd"}}), []
+    names = ["time", *(f"joint.{x}.position" for x in "abcd")]
+    table = pa.table({name: [place + 0.0, place + 1.0] for place, name in enumerate(names)})
     pa_parquet.write_table(table, tmp_path / "log.parquet")
-    batches = pa_parquet.ParquetFile.iter_batches
+    batches, at_work, most = pa_parquet.ParquetFile.iter_batches, list[str](), list[int]()
+    together = Barrier(3)
 
-    def iter_batches(file: pa_parquet.ParquetFile, size: int, columns: list[str]) -> object:
-        asked.append(len(columns))
-        return batches(file, size, columns=columns)
+    def iter_batches(file: pa_parquet.ParquetFile, size: int, columns: list[str], **options: bool) -> object:
+        (name,) = columns
+        at_work.append(name)
+        if name in names[:3]:  # of each core the first one
+            together.wait(10)
+        most.append(len(at_work))
+        yield from batches(file, size, columns=columns, **options)
+        at_work.remove(name)
 
     monkeypatch.setattr(pa, "cpu_count", lambda: 3)
     monkeypatch.setattr(pa_parquet.ParquetFile, "iter_batches", iter_batches)
     log = open_log(tmp_path / "log.parquet")
-    assert asked == [3, 2]
-    assert all(values.tolist() == [1.0, 2.0] for values in log.columns.values())
+    assert max(most) == 3
+    read = [log.time, *log.columns.values()]
+    assert [values.tolist() for values in read] == [[place, place + 1] for place in range(5)]
 
 
 def test_columns_may_stand_in_any_order_and_have_windows_ends(tmp_path: Path) -> None:
