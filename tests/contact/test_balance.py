@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -123,6 +125,23 @@ def test_a_sensor_that_reads_the_opposite_gives_the_same_point(log: MotionLog, t
     flipped = {name: -values for name, values in log.columns.items() if name.startswith("wrench.right")}
     ours = measured_balance(load_robot(file), log.with_columns(flipped))
     assert ours.zmp == pytest.approx(measured_balance(hrp2.robot(), log).zmp)
+
+
+def test_a_sensor_that_is_mounted_upside_down_gives_the_same_point(log: MotionLog) -> None:
+    """Half a turn about its x axis: it reads the load along -z."""
+    robot = hrp2.robot()
+    right = robot.feet["right"]
+    np.testing.assert_array_equal(right.wrench.placement.rpy, np.zeros(3))
+    placed = replace(right.wrench.placement, rpy=np.array([np.pi, 0.0, 0.0]))
+    turned = replace(right, wrench=replace(right.wrench, placement=placed))
+    flipped = {
+        name: -values
+        for name, values in log.columns.items()
+        if name.startswith(f"wrench.{right.wrench.name}.") and name[-1] in "yz"
+    }
+    ours = measured_balance(replace(robot, feet={**robot.feet, "right": turned}), log.with_columns(flipped))
+    assert ours.zmp == pytest.approx(measured_balance(robot, log).zmp)
+    assert set(ours.outlines) == {"left", "right"}
 
 
 def test_a_robot_in_the_air_has_no_balance(log: MotionLog) -> None:

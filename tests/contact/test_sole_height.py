@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sway
+from feet_trials import noisy, without
 from plantar.contact.deflection import bush_states
 from plantar.contact.relative_pose import relative_pose
 from plantar.contact.sole_height import height_changes
@@ -71,3 +72,21 @@ def test_an_imu_that_is_turned_about_each_axis(robot: RobotModel) -> None:
             found.append(height(robot, moved) - height(robot, log))
         apart = [np.abs(one - changes[f"imu {axis}"]).max() for one in found]
         assert min(apart) < 0.05 * np.abs(changes[f"imu {axis}"]).max() + 2e-5
+
+
+def test_a_log_without_orientation_has_the_same_causes(robot: RobotModel) -> None:
+    """One without causes would pass for one in which nothing can be wrong, and so would all logs beside it."""
+    log, robot = noisy(record(sway("sway", 3)), 3), replace(robot, uncertainty=Uncertainty())
+    known, derived = (dict(height_changes(one, robot)) for one in (log, without(log, "orientation")))
+    assert derived.keys() == known.keys()
+    for cause, change in known.items():
+        np.testing.assert_allclose(derived[cause], change, atol=0.1 * np.abs(change).max() + 2e-6)
+
+
+def test_a_hole_in_a_joint_leaves_the_samples_beside_it(robot: RobotModel) -> None:
+    log, robot = record(sway("sway", 3)), replace(robot, uncertainty=Uncertainty())
+    column = log.columns["joint.left_leg_z.position"].copy()
+    column[498:562] = np.nan
+    spoiled = log.with_columns({"joint.left_leg_z.position": column})
+    for cause, change in height_changes(spoiled, robot, np.isfinite(column)):
+        assert np.isfinite(change).all(), cause

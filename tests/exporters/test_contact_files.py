@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sdf, write_urdf
+from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_mjcf, write_sdf, write_urdf
 from plantar.conventions import GRAVITY
 from plantar.errors import ExportError
 from plantar.exporters import export
@@ -152,3 +152,48 @@ def test_what_cannot_be_written_is_said(tmp_path: Path) -> None:
     for target in ("bullet-contact", "drake-contact"):
         with pytest.raises(ExportError, match="weigh nothing"):
             export(result(urdf), target, tmp_path / "out.xml", model=light)
+
+
+CRATE = """    def Xform "crate" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"])
+    {
+        float physics:mass = 60
+    }
+
+    def Xform "biped"
+"""
+BOX = '<body name="crate"><freejoint/><geom type="box" size="0.2 0.2 0.2" mass="60"/></body></worldbody>'
+
+
+def test_what_else_is_in_a_stage_does_not_stand_on_the_feet(tmp_path: Path) -> None:
+    pytest.importorskip("pxr", reason="no usd-core: pip install 'plantar[usd]'")
+    stage = write_usd(tmp_path / "crate.usda")
+    alone = points_of("physx-contact", written("physx-contact", tmp_path), "left")
+    stage.write_text(stage.read_text().replace('    def Xform "biped"\n', CRATE))
+    beside = points_of("physx-contact", written("physx-contact", tmp_path, model=stage), "left")
+    np.testing.assert_array_equal(beside, alone)
+
+
+def test_what_else_is_in_a_scene_does_not_stand_on_the_feet(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("mujoco")
+    from plantar.exporters.contact import target
+
+    asked: list[float] = []
+
+    def weighed(foot: object, weight: float, least_load: float) -> None:
+        asked.append(weight)
+        raise ExportError("enough")
+
+    monkeypatch.setattr(target, "fitted", weighed)
+    model = write_mjcf(tmp_path / "scene.xml")
+    for text in (model.read_text(), model.read_text().replace("</worldbody>", BOX)):
+        model.write_text(text)
+        with pytest.raises(ExportError, match="enough"):
+            export(
+                result(write_urdf(tmp_path / "biped.urdf")),
+                "mujoco-contact",
+                tmp_path / "out.xml",
+                model=model,
+            )
+    assert asked[1] == asked[0] > 20 * GRAVITY

@@ -54,3 +54,11 @@ def test_offsets_tilt_the_frame_about_their_own_axes(tmp_path: Path, foot: str) 
     for axis, angle in (("roll", turn[2, 1]), ("pitch", turn[0, 2])):
         stiffness, _, offset = TRUTH[foot][axis]
         assert angle == pytest.approx(-offset / stiffness, rel=1e-3, abs=1e-9)
+
+
+def test_the_bushes_joints_are_no_actuators(tmp_path: Path) -> None:
+    """Drake gives one to every joint whose effort is not 0: a controller's torques would not fit the plant any more."""
+    joints = {joint.get("name"): joint for joint in exported(tmp_path, with_offset=False).findall("joint")}
+    efforts = {name: joint.findtext("axis/limit/effort") for name, joint in joints.items()}
+    driven = {name for name, joint in joints.items() if joint.get("type") != "fixed" and efforts[name] != "0"}
+    assert driven == {"left_hip", "left_ankle_pitch", "right_hip", "right_ankle_pitch"}

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from export_robots import CENTRE, SOLE_Z, bush_rotation, result, write_sdf
+from plantar.errors import ExportError
 from plantar.exporters import export
 
 
@@ -42,6 +43,26 @@ def test_urdf_export_twice_updates_instead_of_stacking(feet: dict[str, Any], tmp
     assert "<springStiffness>300</springStiffness>" in text
     assert text.count("<springStiffness>") == 5
     assert "export_updated" in {note.code for note in notes}
+
+
+@pytest.mark.parametrize("target", ["urdf", "sdf", "drake", "mjcf"])
+def test_a_model_whose_bush_lacks_an_axis_of_the_result_is_refused(
+    target: str, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    """A second chain beside the first would have links and joints of the same names."""
+    suffix = {"urdf": ".urdf", "mjcf": ".xml"}.get(target, ".sdf")
+    one, two = tmp_path / f"one{suffix}", tmp_path / f"two{suffix}"
+    rigid = copy.deepcopy(feet)
+    rigid["parameters"] = [row for row in feet["parameters"] if row["axis"] != "z"]
+    export(rigid, target, one)
+    with pytest.raises(ExportError, match=r"without LLEG_BUSH_Z.*valid: a model without bushes"):
+        export(feet, target, two, model=one)
+    export(feet, target, one)
+    if target == "drake":  # its joints have no springs of their own: a slide without one would drop the robot
+        with pytest.raises(ExportError, match="LLEG_BUSH_Z, which the result has not: it would move freely"):
+            export(rigid, target, two, model=one)
+    else:
+        export(rigid, target, two, model=one)  # as a robot's own model, whose slide stays as it is there
 
 
 @pytest.mark.parametrize("version", ["1.5", "1.6", "1.9"])
@@ -156,3 +177,44 @@ def test_meshes_that_mujoco_reads_stay_in_its_model(feet: dict[str, Any], urdf: 
     assert lost.endswith(": c.dae")
     pelvis = ET.parse(tmp_path / "out.xml").getroot().find(".//body[@name='pelvis']")
     assert [geom.get("mesh") for geom in pelvis.findall("geom")] == [None, "a"]  # type: ignore[union-attr]
+
+
+FOOT = r'(<link name="left_ankle">.*?)(<collision name="foot">.*?</collision>)'
+
+
+@pytest.mark.parametrize("target", ["urdf", "sdf", "drake"])
+def test_the_foots_shape_in_a_link_fixed_to_the_ankle_goes_with_the_sole(
+    target: str, urdf: Path, tmp_path: Path
+) -> None:
+    """Left with the ankle it would carry the ground's force past the bush."""
+    text = urdf.read_text()
+    found = re.search(FOOT, text)
+    assert found is not None
+    fixed = f'<link name="left_shoe">{found[2]}</link><joint name="left_shoe_fix" type="fixed"><origin xyz="0 0 0.02"/>'
+    fixed += '<parent link="left_ankle"/><child link="left_shoe"/></joint></robot>'
+    urdf.write_text(text.replace(found[0], found[1]).replace("</robot>", fixed.replace("-0.09", "-0.11")))
+    export(result(urdf), target, tmp_path / "out")
+    root = ET.parse(tmp_path / "out").getroot()
+    links = {link.get("name"): link for link in root.iter("link")}
+    assert not links["left_shoe"].findall("collision")
+    (shape,) = links["left_bush_sole"].findall("collision")
+    place = shape.findtext("pose", "").split()[:3] or shape.find("origin").get("xyz").split()  # type: ignore[union-attr]
+    np.testing.assert_allclose([float(part) for part in place], [0, 0, -0.09 - CENTRE[2]], atol=1e-9)
+
+
+@pytest.mark.parametrize("target", ["urdf", "sdf", "drake"])
+def test_a_sole_behind_a_sensor_is_cut_off_by_the_bush(target: str, urdf: Path, tmp_path: Path) -> None:
+    """Ankle, sensor and sole are fixed one to the next: what lies below the bush centre goes, however deep it hangs."""
+    text = urdf.read_text()
+    chain = (
+        f'<origin xyz="0 0 {SOLE_Z}"/><parent link="left_ankle"/>',
+        f'<origin xyz="0 0 {SOLE_Z + 0.05}"/><parent link="left_sensor"/>',
+    )
+    assert text.count(chain[0]) == 1
+    urdf.write_text(text.replace(*chain))
+    export(result(urdf), target, tmp_path / "out")
+    root = ET.parse(tmp_path / "out").getroot()
+    joint = next(joint for joint in root.iter("joint") if joint.get("name") == "left_sole_fix")
+    parent = joint.find("parent")
+    assert parent is not None
+    assert (parent.get("link") or parent.text) == "left_bush_sole"

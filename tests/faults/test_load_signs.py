@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import WEIGHT
-from biped_robot import make_robot
+from biped import WEIGHT, record, sway
+from biped_robot import SOLE_DEPTH, Frame, Mounting, make_robot
 from plantar.faults.load_signs import check_load_signs
+from plantar.faults.log_faults import check_log
 from plantar.robot.model import RobotModel
 
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -29,6 +30,17 @@ def signed(robot: RobotModel, sign: float) -> RobotModel:
 
 def test_loads_that_push_up_are_right(robot: RobotModel) -> None:
     assert not list(check_load_signs(robot, {"left": LEFT, "right": WEIGHT - LEFT}))
+
+
+def test_a_sensor_with_a_link_of_its_own_may_be_mounted_upside_down(robot: RobotModel) -> None:
+    """As force sensors stand in many URDFs: it reads the load along its -z, which pulls nobody down."""
+    turn, places = (np.pi, 0.0, 0.0), {}
+    for name, foot in robot.feet.items():
+        xyz = foot.wrench.placement.xyz + [0.0, 0.0, SOLE_DEPTH]
+        placed = replace(foot.wrench.placement, link=f"{name}_sole", xyz=xyz, rpy=np.array(turn))
+        places[name] = replace(foot, wrench=replace(foot.wrench, placement=placed))
+    log = record(sway(duration=5.0), Mounting(wrench=Frame((0.01, 0.0, -0.04), turn)))
+    assert not [one for one in check_log(replace(robot, feet=places), log) if one.fatal]
 
 
 @pytest.mark.parametrize("sign", [1, -1])

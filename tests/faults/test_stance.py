@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from biped import record, sway
+from biped_robot import Frame, Mounting, make_robot
 from plantar.faults.stance import Stance, stance_of, usual
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -27,6 +30,14 @@ def test_a_torque_adds_its_moment_arm(stance: Stance) -> None:
     after = Stance(stance.robot, stance.imu, stance.orientation, stance.positions, pushed).sides()
     moved = after.moment_arms.sum(axis=(1, 2)) - before.moment_arms.sum(axis=(1, 2))
     assert usual(moved) == pytest.approx(20.0 / load, rel=0.05)
+
+
+def test_a_sensor_on_its_side_is_loaded_as_well(tmp_path: Path, stance: Stance) -> None:
+    mounting = Mounting(wrench=Frame((0.01, 0.0, -0.04), (0.0, np.pi / 2, 0.0)))
+    found = stance_of(make_robot(tmp_path, mounting), record(sway(duration=12.0), mounting))
+    assert found is not None
+    together, expected = (one.sides().moment_arms.sum(axis=(1, 2)) for one in (found, stance))
+    np.testing.assert_allclose(together, expected, atol=1e-6)
 
 
 def test_changes_undo_themselves(stance: Stance) -> None:

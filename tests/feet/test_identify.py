@@ -130,8 +130,10 @@ def test_equation_7_order_and_company_do_not_matter(robot: RobotModel, logs: lis
     spoiled = [noisy(log, seed) for seed, log in enumerate(logs[:2])]
     one, other = identify_feet(robot, spoiled), identify_feet(robot, spoiled[::-1])
     np.testing.assert_allclose(rotational(one), rotational(other), rtol=1e-9)
-    # Made again to the bit, a motion says the same, but for the weight that it gets against the feet's likeness in z.
-    twin = MotionLog("again", spoiled[0].time + 60.0, spoiled[0].columns)
+    # Made again to the last bit, a motion says the same, but for the weight that it gets against the feet's likeness in
+    # z.
+    again = {name: np.nextafter(values, np.inf) for name, values in spoiled[0].columns.items()}
+    twin = MotionLog("again", spoiled[0].time + 60.0, again)
     once, twice = (identify_feet(robot, each, settings=LINEAR) for each in (spoiled[:1], [spoiled[0], twin]))
     np.testing.assert_allclose(rotational(once), rotational(twice), rtol=1e-3)
 

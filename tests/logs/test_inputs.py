@@ -24,13 +24,45 @@ def test_two_logs_of_one_name_are_refused() -> None:
         check_names([log("one"), log("two"), log("one")])
 
 
-def test_one_recording_under_two_names_is_refused() -> None:
-    one = log("one", a=[1.0, np.nan, 3.0])
-    others = [log("value", a=[1.0, np.nan, 4.0]), log("column", b=[1.0, np.nan, 3.0])]
-    later = MotionLog("later", np.arange(3.0) + 1.0, one.columns)
-    check_names([one, *others, later])
-    with pytest.raises(DataError, match="one and copy hold the same recording"):
-        check_names([one, *others, log("copy", a=[1.0, np.nan, 3.0])])
+SIGNALS = {name: np.random.default_rng(7).normal(size=(2, 600))[place] for place, name in enumerate("ab")}
+
+
+def recording(name: str, rows: slice = slice(None), later: float = 0.0, **changed: np.ndarray) -> MotionLog:
+    columns = {key: values[rows] for key, values in (SIGNALS | changed).items()}
+    return MotionLog(name, np.arange(600.0)[rows] + later, columns)
+
+
+@pytest.mark.parametrize(
+    "copy",
+    [
+        recording("copy"),
+        recording("copy", slice(100, 400)),
+        recording("copy", slice(0, 600, 5), later=1e9),
+        recording("copy", slice(100, 600), extra=np.arange(600.0)),
+        MotionLog("copy", np.arange(600.0), {"b": SIGNALS["b"]}),
+    ],
+)
+def test_one_recording_under_two_names_is_refused(copy: MotionLog) -> None:
+    """Also cut, thinned, on another clock, or with other columns beside: its samples would count twice."""
+    for logs in ([recording("one"), copy], [copy, recording("one")]):
+        with pytest.raises(DataError, match="hold the same recording"):
+            check_names(logs)
+
+
+def test_recordings_that_overlap_by_more_than_half_of_the_shorter_are_one() -> None:
+    check_names([recording("one", slice(0, 400)), recording("two", slice(250, 600))])
+    with pytest.raises(DataError, match="hold the same recording, or most of one"):
+        check_names([recording("one", slice(0, 400)), recording("two", slice(150, 600))])
+
+
+def test_recordings_that_have_little_in_common_are_two() -> None:
+    one = recording("one", slice(0, 320))
+    check_names([one, recording("next", slice(300, 600)), recording("noisy", a=SIGNALS["a"] + 1e-9)])
+    rest = np.zeros(600)
+    check_names([recording("rest", a=rest, b=rest), recording("rest too", a=rest, b=rest)])
+    gap = np.where(np.arange(600) % 2, np.nan, SIGNALS["a"])
+    with pytest.raises(DataError, match="hold the same recording"):
+        check_names([recording("one", a=gap), recording("copy", a=gap)])
 
 
 def test_what_is_no_log_or_no_robot_is_said_in_one_line() -> None:

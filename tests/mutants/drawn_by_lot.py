@@ -154,7 +154,7 @@ DRAWN_BY_LOT = (
     Mutant(
         "exporters/shapes.py",
         "all that has a shape goes with the sole",
-        "elif corners is None or not reaches_sole(corners, foot):",
+        "elif corners is None or not reaches_sole(corners @ place[:3, :3].T + place[:3, 3], foot):",
         "elif corners is None:",
     ),
     Mutant(

@@ -121,4 +121,32 @@ ENGINE_EXPORTS = (
         "comparison/compare.py", "the fall itself is scored",
         "BEFORE: Final = 1.0", "BEFORE: Final = 0.0", ("comparison/test_compare.py",),
     ),
+    Mutant(
+        "exporters/sdf/target.py", "what hangs behind a sensor stays above the bush",
+        "            elif child not in above:\n                above.append(child)\n", "",
+        ("exporters/test_urdf_and_sdf.py",),
+    ),
+    Mutant(
+        "exporters/urdf/target.py", "shapes of links fixed to the ankle stay above the bush",
+        "for name, place in above:\n            for said", "for name, place in above[:1]:\n            for said",
+        ("exporters/test_urdf_and_sdf.py",),
+    ),
+    Mutant(
+        "exporters/bush.py", "a second chain beside a bush that lacks an axis",
+        "if found and missing:", "if found and missing and not found:", ("exporters/test_urdf_and_sdf.py",),
+    ),
+    Mutant(
+        "exporters/sdf/drake.py", "the bush's joints are motors",
+        'effort.text = "0"', 'effort.text = "1"', ("exporters/test_drake_bushing.py",),
+    ),
+    Mutant(
+        "exporters/mjcf/file.py", "the whole scene stands on the feet",
+        "float(self.model.body_subtreemass[root])", "float(self.model.body_subtreemass[0])",
+        ("exporters/test_contact_files.py",),
+    ),
+    Mutant(
+        "exporters/contact/physx.py", "the whole stage stands on the feet",
+        "tied, before = {ankle.GetPath()}, 0", "tied, before = set(bodies), 0",
+        ("exporters/test_contact_files.py",),
+    ),
 )  # fmt: skip

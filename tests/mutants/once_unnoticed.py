@@ -40,6 +40,24 @@ INTERVALS = (
 
 GUARDS = (
     Mutant(
+        "logs/inputs.py", "a recording that is told twice by half is none",
+        "return len(asked & there) > max(1, len(asked) / 2)", "return len(asked & there) == len(asked) == PROBES",
+        ("logs/test_inputs.py",),
+    ),
+    Mutant(
+        "faults/log_faults.py", "the load along the sensor's own z",
+        "(bush.T @ placed)[2] * sensor.sign", "np.array([0.0, 0.0, 1.0]) * sensor.sign",
+        ("faults/test_load_signs.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "the bush's axes taken for the sensor's",
+        "np.asarray((bush.T @ sensor)[[1, 0]])", "np.eye(3)[[1, 0]]", ("sensors/test_sensor_errors.py",),
+    ),
+    Mutant(
+        "contact/sole_height.py", "holes reach the samples beside them",
+        "np.nan_to_num(by * (deviation / STEP))", "by * (deviation / STEP)", ("contact/test_sole_height.py",),
+    ),
+    Mutant(
         "model_selection/selection.py", "standard error of the mean taken for that of the sum",
         "np.std(fall) * np.sqrt(len(fall))", "np.std(fall)",
     ),

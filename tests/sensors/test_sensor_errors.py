@@ -46,11 +46,12 @@ def test_channels_have_gains_and_read_each_other_but_no_torque_reaches_a_force(u
 def test_the_bushs_axes_are_seen_from_the_sensor(robot: RobotModel) -> None:
     """Pitch about the bush's y, roll about its x: of a sensor that is turned by a quarter about z, its x and -y."""
     foot = robot.feet["left"]
-    np.testing.assert_allclose(_directions(foot), [[0, 1, 0], [1, 0, 0]], atol=1e-12)
+    np.testing.assert_allclose(_directions(robot, foot), [[0, 1, 0], [1, 0, 0]], atol=1e-12)
     quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    turned = type(foot.wrench.placement)(
-        foot.wrench.placement.link, foot.wrench.placement.xyz, np.array([0, 0, np.pi / 2])
-    )
+    placement = foot.wrench.placement
+    turned = replace(placement, rpy=np.array([0, 0, np.pi / 2]))
     np.testing.assert_allclose(turned.rotation, quarter, atol=1e-12)
-    found = _directions(replace(foot, wrench=replace(foot.wrench, placement=turned)))
-    np.testing.assert_allclose(found, [[1, 0, 0], [0, -1, 0]], atol=1e-12)
+    for link in (placement.link, "left_sole"):  # also of a link of its own
+        placed = replace(foot.wrench, placement=replace(turned, link=link))
+        found = _directions(robot, replace(foot, wrench=placed))
+        np.testing.assert_allclose(found, [[1, 0, 0], [0, -1, 0]], atol=1e-12)

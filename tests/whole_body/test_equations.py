@@ -30,14 +30,17 @@ def powers(unit: str) -> dict[str, int]:
     return found
 
 
+@pytest.mark.parametrize("slides", [False, True])
 @pytest.mark.parametrize("term", TERM_UNITS)
-def test_a_terms_unit_times_its_columns_is_a_torque(term: str) -> None:
-    product = powers(TERM_UNITS[term])
+def test_a_terms_unit_times_its_columns_is_a_torque_or_of_a_slide_a_force(term: str, slides: bool) -> None:
+    product, place = powers(TERM_UNITS[term][slides]), "m" if slides else "rad"
     for name, power in COLUMNS[term].items():
-        product[name] = product.get(name, 0) + power
+        own = place if name == "rad" else name
+        product[own] = product.get(own, 0) + power
     product.pop("rad", None)
-    assert {name: power for name, power in product.items() if power} == TORQUE
-    radians = powers(TERM_UNITS[term]).get("rad", 0) + COLUMNS[term].get("rad", 0)
+    wanted = {"N": 1} if slides else TORQUE
+    assert {name: power for name, power in product.items() if power} == wanted
+    radians = 0 if slides else powers(TERM_UNITS[term][slides]).get("rad", 0) + COLUMNS[term].get("rad", 0)
     assert radians in (0, 1 if term == "inertia" else 0)
 
 

@@ -207,7 +207,7 @@ def test_what_cannot_serve_is_refused_in_one_line(arm: RobotModel, real: pin.Mod
     with pytest.raises(DataError, match="no joint positions"):
         identify_joints(arm, [MotionLog("one", log.time, {})])
     with pytest.raises((DataError, LogError), match=r"effort"):
-        identify_joints(arm, [log], [MotionLog("two", log.time, silent)])
+        identify_joints(arm, [record(arm, real, "other", 7)], [MotionLog("two", log.time, silent)])
     with pytest.raises(DataError, match="at least one"):
         identify_joints(arm, [])
 
@@ -273,3 +273,28 @@ def test_a_fit_is_judged_in_the_weights_of_another() -> None:
     assert lighter == pytest.approx(4 * alike)
     assert alike == pytest.approx(float(errors_of(tried).min()))
     assert _held_out(SimpleNamespace(held_out=()), one) == np.inf  # type: ignore[arg-type]
+
+
+def test_a_joint_that_slides_has_forces(tmp_path: Path) -> None:
+    """A lift of 2 kg: its friction is in newtons, in what it says and in its scores."""
+    inertial = (
+        '<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    )
+    (tmp_path / "lift.urdf").write_text(
+        '<robot name="lift"><link name="base"/><link name="cart">' + inertial + "</link>"
+        '<joint name="lift" type="prismatic"><parent link="base"/><child link="cart"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1" upper="1" effort="100" velocity="9"/></joint></robot>'
+    )
+    terms = "joints: {lift: {terms: [viscous, coulomb, offset]}}\n"
+    (tmp_path / "lift.yaml").write_text("name: lift\nurdf: lift.urdf\nbase: fixed\n" + terms)
+    time = np.arange(0, 20, 0.01)
+    q, v, a = small_biped.smooth(np.random.default_rng(0), time, 0.3)
+    force = 2 * (9.81 + a) + VISCOUS * v + COULOMB * np.tanh(v / COULOMB_SPEED) + OFFSET
+    force += np.random.default_rng(1).normal(0, 0.1, len(time))
+    states = {"position": q, "velocity": v, "acceleration": a, "effort": force}
+    log = MotionLog("up and down", time, {f"joint.lift.{name}": values for name, values in states.items()})
+    found = identify_joints(tmp_path / "lift.yaml", log, inertia="known")
+    viscous = found.parameter("lift", "viscous")
+    assert (round(viscous.value, 1), viscous.unit) == (VISCOUS, "N.s/m")
+    assert [row.unit for row in found.parameters] == ["N.s/m", "N", "N"]
+    assert found.score("up and down", "lift").unit == "N"

@@ -109,14 +109,16 @@ def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Arra
     least = LOADED * robot.mass * GRAVITY
     total, carrying = np.zeros((len(log), 6)), {}
     for name, foot in robot.feet.items():
-        wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
-        if np.nanmedian(wrench[:, 2]) < least or name not in poses:
+        if name not in poses:
             continue
-        carrying[name] = poses[name]
+        wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
         _, sensor = robot.frame(foot.wrench.placement)
         _, sole = robot.frame(foot.sole.placement)
         to_world = poses[name] @ (sole.inverse() * sensor).homogeneous
         force, torque = wrench[:, FORCE] @ to_world[:3, :3].T, wrench[:, TORQUE] @ to_world[:3, :3].T
+        if np.nanmedian(force[:, 2]) < least:
+            continue
+        carrying[name] = poses[name]
         total[:, FORCE] += force
         total[:, TORQUE] += torque + np.cross(to_world[:3, 3], force)
     if not carrying:

@@ -12,6 +12,7 @@ from plantar.contact.imu_turn import turned
 from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.signals.orientation import attitude
 
 RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
@@ -24,26 +25,23 @@ def height_changes(
     at the n samples `rows` (N,).
 
     Deviations are the robot file's: of each joint's zero between IMU and feet, of the IMU's mount about its three axes,
-    and of each bush's place in its two horizontal directions, about which a sole that leans rises and falls. None where
-    the log has no attitude.
+    and of each bush's place in its two horizontal directions, about which a sole that leans rises and falls.
     """
-    imu, known = robot.imu, robot.uncertainty
-    orientation = log.orientation(imu.name) if imu is not None else None
-    if imu is None or orientation is None:
-        return
-    stride = max(1, round(1 / (RATE * log.period)))
-    positions, attitude = np.asfortranarray(log.positions(robot)[::stride]), orientation[::stride]
+    known, stride = robot.uncertainty, max(1, round(1 / (RATE * log.period)))
+    orientation, _ = attitude(log, robot.required_imu, [])
+    positions, measured = np.asfortranarray(log.positions(robot)[::stride]), orientation[::stride]
     still = np.zeros_like(positions), np.zeros((len(positions), 3))
     last = len(positions) - 1
     place = np.interp(log.time[rows], log.time[::stride], np.arange(len(positions)))
     before = place.astype(np.intp)
     behind, share = np.minimum(before + 1, last), place - before
 
-    def sole(path: FootPath, quaternions: Array = attitude) -> Array:
+    def sole(path: FootPath, quaternions: Array = measured) -> Array:
         return foot_motion(path, positions, still[0], quaternions, still[1]).sole_position[:, 2]
 
     def change(by: Array | float, deviation: float) -> Array:
-        by = by * (deviation / STEP) + np.zeros(len(positions))
+        # Known samples stand beside holes in this coarse grid, which must not reach them.
+        by = np.nan_to_num(by * (deviation / STEP)) + np.zeros(len(positions))
         return np.asarray(by[before] + share * (by[behind] - by[before]))
 
     paths = {name: path_to(robot, name)[0] for name in robot.feet}
@@ -60,7 +58,7 @@ def height_changes(
         positions[:, column] = read
         yield joint, change(by, known.encoder_zero)
     for axis in range(3 if known.imu_mount else 0):
-        leant = turned(attitude, STEP * np.eye(3)[axis])
+        leant = turned(measured, STEP * np.eye(3)[axis])
         by = sum(sides[name] * (sole(path, leant) - lies[name]) for name, path in paths.items())
         yield f"imu {'xyz'[axis]}", change(by, known.imu_mount)
     for name, foot in robot.feet.items():

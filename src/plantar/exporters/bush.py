@@ -7,6 +7,7 @@ the joint's rest position is -offset/K.
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -75,6 +76,21 @@ class FootBush:
     def sole_depth(self) -> float:
         """How far the sole's plane lies below the bush centre [m]."""
         return float(np.mean([self.depth(corner) for corner in self.sole]))
+
+
+def earlier_joints(
+    foot: FootBush, joints: Mapping[str, ET.Element], path: Path
+) -> list[tuple[Spring, ET.Element]]:
+    """The foot's bush joints in a model that has them, each with its spring now; empty where it has none.
+
+    Raises ExportError where it has some but not all: the others would stand beside them.
+    """
+    found = [(spring, joints[name]) for spring in foot.springs if (name := foot.joint(spring.axis)) in joints]
+    missing = [foot.joint(spring.axis) for spring in foot.springs if foot.joint(spring.axis) not in joints]
+    if found and missing:
+        message = f"has the bush of '{foot.name}' without {', '.join(missing)}, which the result has"
+        raise ExportError(message, path=path, valid="a model without bushes")
+    return found
 
 
 def raised(foot: FootBush) -> FootBush:

@@ -28,21 +28,22 @@ def reaches_sole(points: Array, foot: FootBush) -> bool:
 
 
 def taken_off(
-    ankle: ET.Element, points: Callable[[ET.Element], Array | None], foot: FootBush, notes: Notes
+    link: ET.Element, place: Array, points: Callable[[ET.Element], Array | None], foot: FootBush, notes: Notes
 ) -> list[tuple[str, ET.Element]]:
-    """The ankle's shapes that reach the sole, taken off it, each with what it is called.
+    """A link's shapes that reach the sole, taken off it, each with what it is called.
 
-    points: a shape's (n, 3) in the ankle's frame. A collision mesh that cannot be read goes with the sole, with a note.
+    link: the ankle, or one that is fixed to it at `place` (4, 4). points: a shape's (n, 3) in the link's frame. A
+    collision mesh that cannot be read goes with the sole, with a note.
     """
     taken = []
     for tag in ("collision", "visual"):
-        for index, shape in enumerate(ankle.findall(tag)):
+        for index, shape in enumerate(link.findall(tag)):
             corners = points(shape)
             if corners is None and tag == "collision":
                 notes.append(mesh_note(foot))
-            elif corners is None or not reaches_sole(corners, foot):
+            elif corners is None or not reaches_sole(corners @ place[:3, :3].T + place[:3, 3], foot):
                 continue
-            ankle.remove(shape)
+            link.remove(shape)
             taken.append((f"{tag} {shape.get('name', index)}", shape))
     return taken
 

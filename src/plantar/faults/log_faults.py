@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.conventions import GRAVITY
-from plantar.errors import DataError
+from plantar.errors import DataError, clock
 from plantar.faults.air_readings import check_air_readings
 from plantar.faults.bush_frames import check_bush_axes, check_bush_link
 from plantar.faults.channels import check_channels, named
@@ -106,7 +106,7 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         fits = least / DEGREES > lower - slack and most / DEGREES < upper + slack
         worst = most if most - upper > lower - least else least
         at = float(log.time[int(np.nanargmax(values if worst == most else -values))])
-        where = f"column 'joint.{name}.position', t = {at:g} s, value {worst:.6g}"
+        where = f"column 'joint.{name}.position', t = {clock(at)} s, value {worst:.6g}"
         valid = f"valid: {lower:.4g} to {upper:.4g} rad"
         if outside and fits and max(abs(least), abs(most)) > 2 * np.pi:
             yield Finding("degrees", f"{where}: looks like degrees ({valid})", True)
@@ -124,13 +124,9 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
                 "dead_channel", f"columns 'wrench.{sensor.name}.*': hold no value; the sensor is dead"
             )
             continue
-        # Along the bush's z axis, whatever way the sensor is mounted.
-        axis = (
-            (foot.bush.rotation.T @ foot.wrench.placement.rotation)[2]
-            if foot.bush.link == sensor.placement.link
-            else None
-        )
-        load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
+        # Along the bush's z axis, whatever way the sensor is mounted, in whatever link.
+        bush, placed = (robot.frame(each)[1].rotation for each in (foot.bush, sensor.placement))
+        load = wrench[:, :3] @ (bush.T @ placed)[2] * sensor.sign
         if not np.isfinite(load).any():
             text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together: the load is unknown"
             yield Finding("dead_channel", text)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.conventions import FORCE, GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Imu, RobotModel
@@ -123,7 +123,7 @@ def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:
     positions = log.positions(robot)
     whole = complete(orientation, positions, *wrenches)
     whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
-    loaded = whole & (sum(np.abs(w[:, 2]) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
+    loaded = whole & (sum(np.linalg.norm(w[:, FORCE], axis=1) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
     rows = spread_out(np.flatnonzero(loaded), SAMPLES)
     if rows.size < 10:
         return None

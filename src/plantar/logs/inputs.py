@@ -28,6 +28,7 @@ PathInput = str | os.PathLike[str]
 RobotInput: TypeAlias = "RobotModel | PathInput"
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
+PROBES = 40  # samples of a log that another one may hold as well
 AHEAD = 2**26  # bytes of text: read by the time that what works on logs is imported
 FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
 
@@ -167,8 +168,8 @@ def check_names(logs: Sequence[MotionLog]) -> None:
             message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
         for other in seen.values():
-            if _alike(log, other):
-                message = f"{other.source} and {log.source} hold the same recording"
+            if _same_recording(log, other):
+                message = f"{other.source} and {log.source} hold the same recording, or most of one"
                 raise DataError(
                     f"{message} (valid: each once; told twice, intervals come out too narrow, and a log that was "
                     "fitted validates nothing)"
@@ -176,13 +177,23 @@ def check_names(logs: Sequence[MotionLog]) -> None:
         seen[log.name] = log
 
 
-def _alike(log: MotionLog, other: MotionLog) -> bool:
-    """Whether two logs have the same times and values."""
-    if not log.columns or len(log) != len(other) or log.columns.keys() != other.columns.keys():
+def _same_recording(log: MotionLog, other: MotionLog) -> bool:
+    """Whether most of the shorter log's samples are samples of the longer one: as they are, cut, thinned, on another
+    clock or without some of the columns."""
+    short, long = sorted((log, other), key=len)
+    common = sorted(short.columns.keys() & long.columns.keys())
+    if not common or not len(short):
         return False
-    return np.array_equal(log.time, other.time) and all(
-        np.array_equal(values, other.columns[name], equal_nan=True) for name, values in log.columns.items()
+    probes = np.linspace(0, len(short) - 1, PROBES).astype(int)
+    told = {name: short.columns[name][probes] for name in common}
+    finest = max(common, key=lambda name: len(np.unique(told[name])))
+    alike = np.isin(long.columns[finest], np.unique(told[finest]))
+    asked, there = (
+        {row.tobytes() for row in np.column_stack(columns)}
+        for columns in (list(told.values()), [long.columns[name][alike] for name in common])
     )
+    # Noise-free logs may rest alike: that is one sample of all.
+    return len(asked & there) > max(1, len(asked) / 2)
 
 
 def _bounded(logs: Sequence[LogInput], memory: int) -> bool:
@@ -199,7 +210,7 @@ def _largest(path: Path) -> float:
 
 def _log_of(log: LogInput, robot: RobotModel, longest: float) -> MotionLog:
     if isinstance(log, MotionLog):
-        return log
+        return log.without_empty_joints()
     if isinstance(log, str | os.PathLike):
         return open_log(log, robot, longest=longest)
     raise _no_log(log)

@@ -9,7 +9,8 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.dynamics import Contact, Equation, equation_of
+from plantar.dynamics import Contact, Equation
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
@@ -159,7 +160,7 @@ class _SensorReadings:
         foot, own = [*robot.feet.values()][place], slice(6 * place, 6 * place + 6)
         transfer = equation.base_transfer(positions, Contact(*robot.frame(foot.wrench.placement)))
         alone = np.zeros((2, 6, 6))
-        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(foot)]
+        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(robot, foot)]
         by_torques = (transfer @ (alone @ residual.changes[:, own].T).transpose(2, 1, 0)).transpose(2, 0, 1)
         errors = np.concatenate([alone, _sensor_errors(robot)[0]])
         return cls(residual.readings[:, own], transfer, errors, by_torques)
@@ -209,11 +210,10 @@ def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:
     return np.array(matrices), np.array(deviations)
 
 
-def _directions(foot: Foot) -> Array:
+def _directions(robot: RobotModel, foot: Foot) -> Array:
     """The bush's pitch and roll axes in the force sensor's frame, (2, 3)."""
-    same = foot.bush.link == foot.wrench.placement.link
-    turn = foot.wrench.placement.rotation.T @ foot.bush.rotation if same else np.eye(3)
-    return np.asarray(turn.T[[1, 0]])
+    sensor, bush = (robot.frame(each)[1].rotation for each in (foot.wrench.placement, foot.bush))
+    return np.asarray((bush.T @ sensor)[[1, 0]])
 
 
 def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResidual) -> tuple[Array, Array]:

@@ -14,12 +14,13 @@ from plantar.whole_body.folds import Samples
 
 DISSIPATIVE = ("viscous", "coulomb", "inertia")  # cannot be negative; a spring may, where a pose is unstable
 
+# Of joints that turn, and of those that slide.
 TERM_UNITS = {
-    "viscous": "N.m.s/rad",
-    "coulomb": "N.m",
-    "offset": "N.m",
-    "stiffness": "N.m/rad",
-    "inertia": "kg.m2",
+    "viscous": ("N.m.s/rad", "N.s/m"),
+    "coulomb": ("N.m", "N"),
+    "offset": ("N.m", "N"),
+    "stiffness": ("N.m/rad", "N/m"),
+    "inertia": ("kg.m2", "kg"),
 }
 
 

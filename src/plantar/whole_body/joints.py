@@ -61,7 +61,8 @@ def identify_joints(
             bases), "known" the URDF's.
 
     Returns:
-        Each joint's terms [N·m, N·m/rad, N·m·s/rad, kg·m²] with 95 % intervals and verdicts, and scores [N·m].
+        Each joint's terms [N·m, N·m/rad, N·m·s/rad, kg·m²; of one that slides N, N/m, N·s/m, kg] with 95 % intervals
+        and verdicts, and scores [N·m or N].
 
     Raises:
         SettingsError: an unknown `inertia`. RobotError, LogError, DataError: the input cannot be used, in one line.
@@ -95,9 +96,10 @@ def identify_joints(
         "inertia": inertia,
         "terms": {joint: list(names) for joint, names in terms.items()},
     }
+    first, tree = body.equation.first_joint_row, body.equation.tree
     places = [
-        Place(body.equation.first_joint_row + joint, "N.m", joint=name)
-        for joint, name in enumerate(body.equation.tree.names)
+        Place(first + joint, TERM_UNITS["offset"][int(tree.slides[joint])], joint=name)
+        for joint, name in enumerate(tree.names)
         if name in terms
     ]
     parameters = _parameters(fit, trust, terms, fitted)
@@ -183,7 +185,7 @@ def _parameters(
     for joint, name in enumerate(fit.equation.tree.names):
         if name not in terms:
             continue
-        row = fit.equation.first_joint_row + joint
+        row, slides = fit.equation.first_joint_row + joint, int(fit.equation.tree.slides[joint])
         torque = float(np.sqrt(np.mean(np.concatenate([one.measured[row] for one in recordings]) ** 2)))
         still = all(np.ptp(one.motion.positions[:, joint]) < 1e-3 for one in recordings)
         for term, value, std in zip(terms[name], fit.extras[row], trust.extras[row], strict=True):
@@ -191,7 +193,7 @@ def _parameters(
             verdict, reason = _judge(term, float(value), interval, torque, still)
             rows.append(
                 JointParameter(
-                    name, term, TERM_UNITS[term], float(value), float(std), interval, verdict, reason
+                    name, term, TERM_UNITS[term][slides], float(value), float(std), interval, verdict, reason
                 )
             )
     return tuple(rows)

@@ -42,7 +42,7 @@ def write(job: Job, notes: Notes) -> str:
     if job.model is None:
         raise ExportError("PhysX' contact goes onto a stage", valid="--model with the robot's USD stage")
     layer, stage = layer_above(job.model)
-    weight = _mass(stage, job.model) * GRAVITY
+    weight = _mass(stage, ankle_of(stage, job.feet[0], job.model), job.model) * GRAVITY
     for foot in job.feet:
         made = spring_foot(foot, weight)
         points = placed(foot, made, weight)
@@ -55,14 +55,23 @@ def write(job: Job, notes: Notes) -> str:
     return text_of(layer, job.head("PhysX' contact", notes, joints=False), job.model, job.out)
 
 
-def _mass(stage: Any, model: Path) -> float:
+def _mass(stage: Any, ankle: Any, model: Path) -> float:
+    """Of the bodies that joints tie to the ankle [kg]: what else is in the scene does not stand on the feet."""
     from pxr import UsdPhysics
 
-    bodies = [prim for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
-    masses = {str(prim.GetPath()): UsdPhysics.MassAPI(prim).GetMassAttr().Get() or 0.0 for prim in bodies}
+    bodies = {prim.GetPath(): prim for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)}
+    ties = [
+        {*joint.GetBody0Rel().GetTargets(), *joint.GetBody1Rel().GetTargets()} & bodies.keys()
+        for joint in map(UsdPhysics.Joint, stage.Traverse())
+        if joint
+    ]
+    tied, before = {ankle.GetPath()}, 0
+    while len(tied) > before:
+        before, tied = len(tied), tied.union(*(ends for ends in ties if ends & tied))
+    masses = {str(path): UsdPhysics.MassAPI(bodies[path]).GetMassAttr().Get() or 0.0 for path in sorted(tied)}
     bare = [path for path, mass in masses.items() if mass <= 0]
-    if bare or not masses:
-        message = f"a rigid body has no mass: {bare[0] if bare else 'there is none'}"
+    if bare:
+        message = f"a rigid body has no mass: {bare[0]}"
         raise ExportError(message, path=model, valid="physics:mass on every rigid body")
     return float(sum(masses.values()))
 

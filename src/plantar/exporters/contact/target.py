@@ -43,7 +43,9 @@ def write(job: Job, notes: Notes) -> str:
     assert job.model is not None
     earlier = {foot.name: _taken_out(root, foot) for foot in job.feet}
     model = Compiled(root, job.model)
-    weight = float(model.model.body_mass.sum()) * GRAVITY
+    for foot in job.feet:
+        model.body_element(root, foot.ankle)  # one that is missing is named before its robot is weighed
+    weight = model.robot_mass(job.feet[0].ankle) * GRAVITY
     turns_in_bush = job.stance.pivot == "bush"
     for foot in job.feet:
         found = fitted(raised(foot) if turns_in_bush else foot, weight, job.stance.least_load)

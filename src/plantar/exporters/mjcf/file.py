@@ -185,6 +185,11 @@ class Compiled:
         return (float(m.body_mass[index]), np.array(m.body_ipos[index]), np.array(m.body_iquat[index]),
                 np.array(m.body_inertia[index]))  # fmt: skip
 
+    def robot_mass(self, body: str) -> float:
+        """What the robot that a body belongs to weighs [kg], without what else is in the scene."""
+        root = int(self.model.body_rootid[self._id("BODY", body)])
+        return float(self.model.body_subtreemass[root])
+
     def inverse_mass(self, body: str) -> float:
         """MuJoCo's inverse mass of a body at the reference pose, along any axis [1/kg]: what scales its contacts."""
         return float(self.model.body_invweight0[self._id("BODY", body), 0])

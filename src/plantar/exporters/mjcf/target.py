@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.errors import ExportError
-from plantar.exporters.bush import FootBush
+from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import plate_note, updated_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import STIFF, opened
@@ -64,11 +64,10 @@ def _floor_note(ours: bool) -> Note:
 
 def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: Notes) -> None:
     body = before.body_element(root, foot.ankle)
-    joints = {joint.get("name"): joint for joint in root.iter("joint")}
-    present = [spring for spring in foot.springs if foot.joint(spring.axis) in joints]
-    for spring in present:
-        _set_spring(joints[foot.joint(spring.axis)], spring, before.degrees)
-    if len(present) == len(foot.springs):
+    joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
+    if earlier := earlier_joints(foot, joints, before.path):
+        for spring, joint in earlier:
+            _set_spring(joint, spring, before.degrees)
         notes.append(updated_note(foot))
         return
     if before.has_body(foot.sole_link):

@@ -3,7 +3,8 @@
 Drake's bushing acts between frame A on the ankle and frame C on the sole with torque constants in the order
 roll, pitch, yaw of `R_AC = Rz(yaw) Ry(pitch) Rx(roll)`, which at yaw 0 is plantar's own, and force constants
 x, y, z (drake.mit.edu, LinearBushingRollPitchYaw and the page on parsing multibody files). The joints keep
-x, y and yaw rigid; a collision filter group keeps ankle and sole apart.
+x, y and yaw rigid and have no effort, without which Drake makes no actuators of them; a collision filter group keeps
+ankle and sole apart.
 """
 
 from __future__ import annotations
@@ -13,10 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from plantar.conventions import rotation_from_rpy
+from plantar.conventions import AXES, rotation_from_rpy
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.poses import pose
-from plantar.exporters.sdf.target import insert_bushes
+from plantar.exporters.sdf.target import fixed_to_ankle, insert_bushes
 from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text
@@ -31,10 +33,14 @@ URI = "http://drake.mit.edu"  # the name space of Drake's own tags
 
 
 def write(job: Job, notes: Notes) -> str:
-    """The model with its feet on bushes, as text."""
+    """The model with its feet on bushes, as text.
+
+    Raises ExportError: no ankle, a model whose bush has other axes than the result.
+    """
     tree = insert_bushes(job, notes, springs=False, meshes=MESHES)
     ET.register_namespace("drake", URI)
     for foot in job.feet:
+        _unactuated(tree, foot)
         _bushing(tree, foot)
         _filter(tree, foot)
     if job.with_offset:
@@ -43,7 +49,25 @@ def write(job: Job, notes: Notes) -> str:
     return to_text(tree.root, job.head("Drake", notes))
 
 
+def _unactuated(tree: SdfTree, foot: FootBush) -> None:
+    """No effort for the bush's joints: to any other Drake gives an actuator, and the plant's input grows by it."""
+    for spring in foot.springs:
+        axis = tree.joints[foot.joint(spring.axis)].find("axis")
+        assert axis is not None, "the joint's dynamics were looked for there"
+        limit = axis.find("limit")
+        limit = ET.SubElement(axis, "limit") if limit is None else limit
+        effort = limit.find("effort")
+        effort = ET.SubElement(limit, "effort") if effort is None else effort
+        effort.text = "0"
+
+
 def _bushing(tree: SdfTree, foot: FootBush) -> None:
+    free = [foot.joint(axis) for axis in AXES if foot.joint(axis) in tree.joints and not foot.spring(axis)]
+    if free:
+        message = (
+            f"has the bush of '{foot.name}' with {free[0]}, which the result has not: it would move freely"
+        )
+        raise ExportError(message, path=tree.path, valid="a model without bushes")
     frame_a = f"{foot.name}_bushing_A"
     for old in list(tree.model):
         ours = (
@@ -76,7 +100,8 @@ def _filter(tree: SdfTree, foot: FootBush) -> None:
     if any(e.get("name") == name for e in tree.model.findall(tag("collision_filter_group"))):
         return
     group = ET.SubElement(tree.model, tag("collision_filter_group"), name=name)
-    members = [foot.ankle, *(foot.link(spring.axis) for spring in foot.springs), *tree.parents(foot.ankle)]
+    above = fixed_to_ankle(tree, foot)[1]
+    members = [*above, *(foot.link(spring.axis) for spring in foot.springs), *tree.parents(foot.ankle)]
     for member in members:
         if member in tree.links:
             ET.SubElement(group, tag("member")).text = member

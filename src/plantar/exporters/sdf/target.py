@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.exporters.bush import FootBush
+from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.sdf.from_urdf import sdf_from_urdf
@@ -51,10 +51,9 @@ def insert_bushes(job: Job, notes: Notes, *, springs: bool, meshes: Collection[s
     else:
         tree = SdfTree.load(job.model, ankles)
     for foot in job.feet:
-        present = [spring for spring in foot.springs if foot.joint(spring.axis) in tree.joints]
-        for spring in present:
-            _dynamics(tree.joints[foot.joint(spring.axis)], spring if springs else None)
-        if len(present) == len(foot.springs):
+        if earlier := earlier_joints(foot, tree.joints, tree.path):
+            for spring, joint in earlier:
+                _dynamics(joint, spring if springs else None)
             notes.append(updated_note(foot))
             continue
         _insert(tree, foot, notes, springs)
@@ -63,8 +62,7 @@ def insert_bushes(job: Job, notes: Notes, *, springs: bool, meshes: Collection[s
 
 def _insert(tree: SdfTree, foot: FootBush, notes: Notes, springs: bool) -> None:
     ankle, bush = tree.links[foot.ankle], pose(foot.centre, rotation=foot.rotation)
-    low = [(joint, child) for joint, child in tree.fixed_children(foot.ankle)
-           if foot.below(relative(tree, child, foot.ankle)[:3, 3])]  # fmt: skip
+    low, above = fixed_to_ankle(tree, foot)
     sole = _add_chain(tree, foot, bush, springs)
     moved = []
     for joint, child in low:
@@ -74,12 +72,14 @@ def _insert(tree: SdfTree, foot: FootBush, notes: Notes, springs: bool) -> None:
         parent.text = foot.sole_link
         assert np.allclose(place, tree.in_model(joint.get("name", "")))
         moved.append(f"{'link' if tree.links[child].find('collision') is not None else 'frame'} {child}")
-    for name, shape in taken_off(ankle, tree.points, foot, notes):
-        pose_element = shape.find("pose")
-        if pose_element is None or not pose_element.get("relative_to"):
-            set_pose(shape, inverse(bush) @ pose_of(shape))
-        sole.append(shape)
-        moved.append(name)
+    for name in above:
+        here = relative(tree, name, foot.ankle)
+        for said, shape in taken_off(tree.links[name], here, tree.points, foot, notes):
+            pose_element = shape.find("pose")
+            if pose_element is None or not pose_element.get("relative_to"):
+                set_pose(shape, inverse(bush) @ here @ pose_of(shape))
+            sole.append(shape)
+            moved.append(said)
     if moved:
         notes.append(moved_note(foot, moved))
     if not any(word.startswith(("collision", "link")) for word in moved):
@@ -93,6 +93,19 @@ def _insert(tree: SdfTree, foot: FootBush, notes: Notes, springs: bool) -> None:
     added = SOLE_MASS * len(foot.springs)
     if mass is not None and (value := vector(mass.text, 1, "mass")[0]) > 2 * added:
         mass.text = numbers([value - added])
+
+
+def fixed_to_ankle(tree: SdfTree, foot: FootBush) -> tuple[list[tuple[ET.Element, str]], list[str]]:
+    """Fixed joints of the links that lie below the bush centre, each with its link, and the links above it, the ankle
+    first."""
+    low, above = [], [foot.ankle]
+    for name in above:
+        for joint, child in tree.fixed_children(name):
+            if foot.below(relative(tree, child, foot.ankle)[:3, 3]):
+                low.append((joint, child))
+            elif child not in above:
+                above.append(child)
+    return low, above
 
 
 def _add_chain(tree: SdfTree, foot: FootBush, bush: Array, springs: bool) -> ET.Element:

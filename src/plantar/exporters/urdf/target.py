@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.exporters.bush import FootBush
+from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
@@ -48,19 +48,19 @@ def insert_bushes(tree: UrdfTree, feet: tuple[FootBush, ...], notes: Notes) -> N
     """Put each foot's chain of bush joints into the tree, or update the joints where they already stand."""
     for foot in feet:
         ankle = tree.link(foot.ankle)
-        present = [spring for spring in foot.springs if foot.joint(spring.axis) in tree.joints]
-        for spring in present:
-            _dynamics(tree.joints[foot.joint(spring.axis)], spring)
-        if len(present) == len(foot.springs):
+        if earlier := earlier_joints(foot, tree.joints, tree.path):
+            for spring, joint in earlier:
+                _dynamics(joint, spring)
             notes.append(updated_note(foot))
             continue
         bush = pose(foot.centre, rotation=foot.rotation)
         sole = _add_chain(tree, foot, bush)
-        moved = _move_fixed_links(tree, foot, bush)
-        for name, shape in taken_off(ankle, tree.points, foot, notes):
-            set_origin(shape, inverse(bush) @ origin_of(shape))
-            sole.append(shape)
-            moved.append(name)
+        moved, above = _move_fixed_links(tree, foot, bush)
+        for name, place in above:
+            for said, shape in taken_off(tree.links[name], place, tree.points, foot, notes):
+                set_origin(shape, inverse(bush) @ place @ origin_of(shape))
+                sole.append(shape)
+                moved.append(said)
         if moved:
             notes.append(moved_note(foot, moved))
         if not any(word.startswith(("collision", "link")) for word in moved):
@@ -99,12 +99,14 @@ def _dynamics(joint: ET.Element, spring: Spring) -> None:
     element.set("friction", "0")
 
 
-def _move_fixed_links(tree: UrdfTree, foot: FootBush, bush: Array) -> list[str]:
-    """Hang on the sole what is fixed to the ankle and lies below the bush centre."""
-    moved, queue = [], [(foot.ankle, np.eye(4))]
-    while queue:
-        above, place = queue.pop()
-        for joint, child in tree.fixed_children(above):
+def _move_fixed_links(
+    tree: UrdfTree, foot: FootBush, bush: Array
+) -> tuple[list[str], list[tuple[str, Array]]]:
+    """Hang on the sole what is fixed to the ankle and lies below the bush centre; what it is, and the links above it
+    with their places in the ankle, itself first."""
+    moved, above = [], [(foot.ankle, np.eye(4))]
+    for name, place in above:
+        for joint, child in tree.fixed_children(name):
             here = place @ origin_of(joint)
             if foot.below(here[:3, 3]):
                 parent = joint.find("parent")
@@ -114,8 +116,8 @@ def _move_fixed_links(tree: UrdfTree, foot: FootBush, bush: Array) -> list[str]:
                 shaped = tree.links[child].find("collision") is not None
                 moved.append(f"{'link' if shaped else 'frame'} {child}")
             else:
-                queue.append((child, here))
-    return moved
+                above.append((child, here))
+    return moved, above
 
 
 def _add_plate(sole: ET.Element, foot: FootBush) -> None:

@@ -107,7 +107,9 @@ def fit_vertical_stiffness(heights: Sequence[Heights], robot: RobotModel) -> Ver
     """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
     blocks, changes = [own.block for own in heights], [own.changes for own in heights]
-    found = _compliances(blocks, _common(changes)) if blocks else None
+    found = (
+        _compliances(blocks, [[own[cause] for own in changes] for cause in changes[0]]) if blocks else None
+    )
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
@@ -127,13 +129,9 @@ def fit_vertical_stiffness(heights: Sequence[Heights], robot: RobotModel) -> Ver
     )
 
 
-def _common(errors: Sequence[Mapping[str, Array]]) -> list[list[Array]]:
-    """The changes of h in each recording, of each cause that all of them have."""
-    return [[own[cause] for own in errors] for cause in errors[0] if all(cause in own for own in errors)]
-
-
 def _compliances(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Compliances:
-    """Sum and difference; the sum alone where the total load changes in no recording. `errors`: see `_common`."""
+    """Sum and difference; the sum alone where the total load changes in no recording. `errors`: by cause, the changes
+    of h in each recording."""
     if any(block.regressor[:, 1].any() for block in blocks):
         fit = fit_linear(blocks)
         return Compliances(

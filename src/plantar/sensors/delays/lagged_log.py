@@ -6,7 +6,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from plantar.conventions import FORCE, GRAVITY, Array
-from plantar.dynamics import Contact, equation_of, model_parameters
+from plantar.dynamics import Contact, model_parameters
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog

@@ -105,7 +105,8 @@ def _columns(
                     end = count + batch.num_rows
                     if end > rows:
                         break
-                    numbers = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+                    # Not safely: nanoseconds since 1970 are more than a float64 tells apart, and near enough.
+                    numbers = batch.column(name).cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
                     numbers = numbers if kept is None else numbers[kept[count:end]]
                     row[place : place + len(numbers)] = numbers
                     count, place = end, place + len(numbers)
