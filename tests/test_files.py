@@ -88,6 +88,7 @@ def test_messages_have_a_fixed_order_and_one_line() -> None:
     assert str(error) == "a.csv, column 'time', t = 1.25 s, value 'x': is wrong (valid: seconds)"
     assert str(PlantarError("is wrong")) == "is wrong"
     assert str(PlantarError("is wrong", value=3.5)) == "value 3.5: is wrong"
+    assert str(PlantarError("is wrong", time=1_700_000_004.99)) == "t = 1700000004.99 s: is wrong"
 
 
 def test_a_missing_extra_says_how_to_get_it() -> None:

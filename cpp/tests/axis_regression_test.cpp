@@ -6,9 +6,9 @@
 
 #include "check.hpp"
 
-using namespace plantar;
+namespace axis_regression_test {
 
-namespace {
+using namespace plantar;
 
 constexpr double ROW = 0.025;  // s
 constexpr double DAMPING_TRUTH = 20.0;
@@ -309,9 +309,7 @@ void what_no_ground_does_is_thrown_away() {
   check::near(found.value[STIFFNESS], 800.0, 0.5, "stiffness behind it");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   a_motion_that_begins_is_no_other_ground();
   what_no_ground_does_is_thrown_away();
   slow_motions_tell_the_stiffness();
@@ -327,5 +325,8 @@ int main() {
   deviations_hold();
   what_was_long_ago_fades_and_rest_forgets_nothing();
   offsets_are_each_stances_own();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace axis_regression_test

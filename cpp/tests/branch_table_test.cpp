@@ -5,9 +5,9 @@
 #include "branch_curve.hpp"
 #include "check.hpp"
 
-using namespace plantar;
+namespace branch_table_test {
 
-namespace {
+using namespace plantar;
 
 // Places that crowd at one end, as those of a branch do, and their squares.
 std::vector<double> places() {
@@ -31,9 +31,10 @@ void every_segment_is_a_line_through_its_ends() {
   check::near(table.value(at[3], squares.data() + at.size() - 1, -1), squares[at.size() - 4], 1e-14, "backwards");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   every_segment_is_a_line_through_its_ends();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace branch_table_test

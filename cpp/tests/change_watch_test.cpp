@@ -5,10 +5,10 @@
 
 #include "check.hpp"
 
+namespace change_watch_test {
+
 using namespace plantar;
 using Verdict = ChangeWatch::Verdict;
-
-namespace {
 
 constexpr double ROW = 0.025;  // s
 constexpr double STIFFNESS = 800.0, DAMPING = 50.0;
@@ -106,9 +106,7 @@ void what_no_line_explains_is_no_ground() {
   check::that(watch.full(), "probes are short until one is clear");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   a_short_probe_speaks();
   a_probe_that_shows_little_may_be_sure();
   two_clear_probes_are_enough();
@@ -116,5 +114,8 @@ int main() {
   a_late_torque_is_no_other_ground();
   no_ground_pulls_the_other_way();
   what_no_line_explains_is_no_ground();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace change_watch_test

@@ -3,9 +3,9 @@
 
 #include "check.hpp"
 
-using namespace plantar;
+namespace contact_gate_test {
 
-namespace {
+using namespace plantar;
 
 constexpr double WEIGHT = 500.0, PERIOD = 0.001;  // N, s
 
@@ -54,13 +54,14 @@ void short_stances_settle_sooner() {
   check::near(gate.settling(), 0.25, 1e-9, "a quarter of a second at most");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   a_foot_that_stands_from_the_first_reading_lands_with_it();
   between_both_shares_it_stays_what_it_was();
   a_blow_of_a_tick_is_no_landing();
   missing_readings_are_forgotten_with_what_was_before_them();
   short_stances_settle_sooner();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace contact_gate_test

@@ -6,9 +6,9 @@
 #include "check.hpp"
 #include "online/channel_watch.hpp"
 
-using namespace plantar;
+namespace contradiction_test {
 
-namespace {
+using namespace plantar;
 
 constexpr double PERIOD = 0.005, BEGIN = 5.0, END = 9.0, LAST = 12.0;  // s: of the samples, of the fault
 constexpr double SWAY = 0.05, PACE = 6.0;                              // rad, rad/s: of a chest that pitches
@@ -86,12 +86,13 @@ void a_frozen_joint_leaps() {
   check::that(leaps == 1 && false_ones == 0, "a frozen joint leaps, one that sets out does not");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   a_frozen_joint_leaps();
   what_has_stood_and_moved_again_is_not_doubted();
   a_fault_is_told_and_soon_over();
   small_turns_add_up();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace contradiction_test

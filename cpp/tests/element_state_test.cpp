@@ -6,9 +6,9 @@
 
 #include "check.hpp"
 
-using plantar::ElementState;
+namespace element_state_test {
 
-namespace {
+using plantar::ElementState;
 
 constexpr double SLIP = 0.01, STIFFNESS = 434.0, TORQUE = 5.0;
 
@@ -28,9 +28,7 @@ struct Rubber {
   }
 };
 
-}  // namespace
-
-int main() {
+void run() {
   for (const double first : {0.004, 0.02, -0.03, 0.06})
     for (const double landing : {-0.02, 0.0, 0.005, 0.03}) {
       Rubber rubber;
@@ -63,5 +61,8 @@ int main() {
       element.follow(0.5 * (at(tick) + at(tick + 1)));
     }
   }
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace element_state_test

@@ -5,9 +5,9 @@
 #include "check.hpp"
 #include "two_feet.hpp"
 
-using namespace plantar;
+namespace estimator_delay_test {
 
-namespace {
+using namespace plantar;
 
 // Wrenches that are later than was told from the first tick on, or earlier, follow the deflection otherwise at each
 // frequency.
@@ -40,9 +40,10 @@ void one_foot_alone_may_be_late(double delay, bool seen) {
   }
   check::that(((late.flags & LATE_WRENCH) != 0) == seen, "the foot that is late");
   check::that(!(other.flags & LATE_WRENCH) && other.pitch.identified, "not the other one");
-  const auto off = [](const FootEstimate& foot) { return std::abs(foot.pitch.damping.value - DAMPING[0]); };
-  check::that(off(late) > 0.5 * STIFFNESS[0] * delay && off(late) < late.pitch.damping.half_width, "its interval holds");
-  check::that(other.pitch.damping.half_width < 0.5 * STIFFNESS[0] * delay, "the other one's is no wider for it");
+  const auto off = [](const FootEstimate& foot) { return std::abs(foot.pitch.damping.value - TRUE_DAMPING[0]); };
+  check::that(off(late) > 0.5 * TRUE_STIFFNESS[0] * delay && off(late) < late.pitch.damping.half_width,
+              "its interval holds");
+  check::that(other.pitch.damping.half_width < 0.5 * TRUE_STIFFNESS[0] * delay, "the other one's is no wider for it");
 }
 
 // Deviations are found anew where some seconds of rows end; until then they grow by what the values have moved.
@@ -56,18 +57,20 @@ void what_a_value_has_moved_is_in_its_deviation() {
     for (auto& w : sensors.wrench) w[4] += CREEPS * std::max(t - BEGINS, 0.0) * angle(0, t);
     last = estimator.step(sensors.reading(t))[0];
   }
-  const double moved = last.pitch.stiffness.value - STIFFNESS[0];
+  const double moved = last.pitch.stiffness.value - TRUE_STIFFNESS[0];
   check::that(moved > 0.1, "stiffness follows the ground");
   check::near(last.pitch.stiffness.std, moved, 0.05 * moved, "a deviation that knows of it");
   check::that(last.pitch.stiffness.half_width > 1.96 * moved, "and a half width");
-  check::near(last.pitch.damping.std, 0.03 / 200 * STIFFNESS[0], 1e-3, "readings of one tick apart by a share of it");
+  check::near(last.pitch.damping.std, 0.03 / 200 * TRUE_STIFFNESS[0], 1e-3,
+              "readings of one tick apart by a share of it");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   for (const double delay : {0.01, 0.03, -0.01}) a_delay_that_was_told_wrongly_is_seen(delay);
   one_foot_alone_may_be_late(0.015, true), one_foot_alone_may_be_late(0.003, false);
   what_a_value_has_moved_is_in_its_deviation();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace estimator_delay_test

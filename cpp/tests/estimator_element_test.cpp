@@ -9,9 +9,9 @@
 #include "check.hpp"
 #include "plantar/foot_estimator.hpp"
 
-using namespace plantar;
+namespace estimator_element_test {
 
-namespace {
+using namespace plantar;
 
 constexpr double STIFFNESS = 900.0, DAMPING = 20.0, SLIP_ANGLE = 0.01, SLIP_TORQUE = 8.0, WEIGHT = 1500.0;
 constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
@@ -119,13 +119,14 @@ void a_pause_is_no_lift() {
   check::near(found.pitch.stiffness.value, STIFFNESS, 0.01 * STIFFNESS, "stiffness behind a pause");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   a_pause_is_no_lift();
   follows_what_turns_between_samples();
   knows_nothing_of_a_foot_that_always_stands();
   is_known_from_the_first_landing_on();
   says_what_rests_on_what_it_was_told();
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace estimator_element_test

@@ -6,9 +6,9 @@
 #include "check.hpp"
 #include "online/axis_regression.hpp"
 
-using namespace plantar;
+namespace late_torque_test {
 
-namespace {
+using namespace plantar;
 
 constexpr double ROW = 0.025, DAMPING_TRUTH = 20.0;  // s, N·m·s/rad
 
@@ -61,11 +61,12 @@ void an_imu_behind_the_encoders_is_told_by_the_turning(double later, bool joints
   check::that(std::abs(found.value - STIFF * later) < 3.0 * std::max(found.grouped, found.white), "and how surely");
 }
 
-}  // namespace
-
-int main() {
+void run() {
   what_a_delay_does_is_known_beforehand();
   for (const double later : {0.0, 0.01, -0.01}) an_imu_behind_the_encoders_is_told_by_the_turning(later, true);
   an_imu_behind_the_encoders_is_told_by_the_turning(0.01, false);
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace late_torque_test

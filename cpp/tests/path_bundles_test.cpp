@@ -7,9 +7,9 @@
 #include "check.hpp"
 #include "online/path_bundles.hpp"
 
-using namespace plantar;
+namespace path_bundles_test {
 
-namespace {
+using namespace plantar;
 
 Frame frame(double turn, double x) {
   const double c = std::cos(turn), s = std::sin(turn);
@@ -79,10 +79,11 @@ void bundles_find_what_the_chain_finds(int feet, const Kernels& kernels) {
   }
 }
 
-}  // namespace
-
-int main() {
+void run() {
   for (const Kernels* const* kernels = runnable_kernels(); *kernels != nullptr; ++kernels)
     for (const int feet : {1, 2, 3, 5}) bundles_find_what_the_chain_finds(feet, **kernels);
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace path_bundles_test

@@ -5,9 +5,9 @@
 
 #include "check.hpp"
 
-using plantar::RootTriangle;
+namespace root_triangle_test {
 
-namespace {
+using plantar::RootTriangle;
 
 constexpr int N = 3;
 using Rows = double[50][N + 1];
@@ -37,9 +37,7 @@ double product(const RootTriangle<N>& root, int i, int j) {
   return sum;
 }
 
-}  // namespace
-
-int main() {
+void run() {
   Rows rows;
   fill(rows);
   const RootTriangle<N> all = fed(rows, 50);
@@ -77,5 +75,8 @@ int main() {
   empty.add(tiny);
   for (int i = 0; i <= N; ++i)
     for (int j = 0; j <= N; ++j) check::that(std::isfinite(empty.r[i][j]), "a row too small for squares");
-  return check::result();
 }
+
+const check::Listed listed(run);
+
+}  // namespace root_triangle_test

@@ -9,7 +9,8 @@
 
 namespace plantar {
 
-inline constexpr double STIFFNESS[2] = {900.0, 700.0}, DAMPING[2] = {20.0, 30.0}, OFFSET[2] = {1.5, -0.7};
+inline constexpr double TRUE_STIFFNESS[2] = {900.0, 700.0}, TRUE_DAMPING[2] = {20.0, 30.0};
+inline constexpr double TRUE_OFFSET[2] = {1.5, -0.7};
 inline constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
 // The IMU sits on the ankle of both feet: the attitude is the deflection, turned round.
@@ -55,7 +56,7 @@ struct Sensors {
     gyroscope[0] = -dr * std::cos(2 * p) + noise, gyroscope[1] = -dp, gyroscope[2] = dr * std::sin(2 * p);
     double torque[2];
     for (int a = 0; a < 2; ++a)
-      torque[a] = STIFFNESS[a] * angle(a, t - delay) + DAMPING[a] * rate(a, t - delay) + OFFSET[a];
+      torque[a] = TRUE_STIFFNESS[a] * angle(a, t - delay) + TRUE_DAMPING[a] * rate(a, t - delay) + TRUE_OFFSET[a];
     const double pitch = angle(0, t - delay);
     for (auto& w : wrench) w = {0.0, 0.0, load + 1e-6 * std::sin(1e5 * t), torque[1] / std::cos(pitch), torque[0], 0.0};
   }

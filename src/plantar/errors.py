@@ -11,6 +11,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+SIX_DIGITS = 1e5  # s: of more, six digits leave whole seconds
+
+
+def clock(time: float) -> str:
+    """A log's time [s] in a message: to six digits, or to so many that an epoch's clock tells milliseconds."""
+    return f"{time:.6g}" if abs(time) < SIX_DIGITS else f"{time:.13g}"
+
 
 class PlantarError(Exception):
     """A problem with the input that the user can mend; the message is one line. The kinds below are all of this.
@@ -41,7 +48,7 @@ class PlantarError(Exception):
         if column is not None:
             where.append(f"column '{column}'")
         if time is not None:
-            where.append(f"t = {time:.6g} s")
+            where.append(f"t = {clock(time)} s")
         if value is not None:
             where.append(f"value {value!r}" if isinstance(value, str) else f"value {value}")
         line = ": ".join([", ".join(where), message] if where else [message])

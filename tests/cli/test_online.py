@@ -105,7 +105,7 @@ def test_without_a_batch_result_nothing_is_called_usable(
     assert run("online", robot, log, "--wrench-delay", 0, "--json", "-q") == 0
     alone = verdicts(capsys.readouterr().out)
     assert "usable" not in alone["verdict"]
-    assert any("memory" in reason for reason in alone["reason"])
+    assert any("hysteresis" in reason for reason in alone["reason"])
     assert run("identify", "feet", robot, log, "--out", tmp_path / "feet", "-q") == 0
     capsys.readouterr()
     assert run("online", robot, log, "--result", tmp_path / "feet" / "result.json", "--json", "-q") == 0

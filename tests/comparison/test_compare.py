@@ -15,7 +15,6 @@ import plantar
 from command_line import run
 from plantar.comparison import compare as comparison
 from plantar.comparison.compare import KindScore, compare, pooled
-from plantar.comparison.picture import write_picture
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LOOP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
@@ -24,6 +23,8 @@ from plantar.exporters.job import Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.motions.plan import Plan
+from plantar.report.figures.plots import save
+from plantar.report.figures.simulation import replays
 from plantar.results.feet import FeetResult, Parameter
 from plantar.robot.model import RobotModel, load_robot
 from plantar.twin.bush import PAPER, Feet
@@ -132,7 +133,7 @@ def test_the_picture_and_the_numbers_go_to_a_folder(
     compared: tuple[tuple[KindScore, ...], tuple[Replayed, ...]], tmp_path: Path
 ) -> None:
     pytest.importorskip("matplotlib")
-    (path,) = write_picture(tmp_path, compared[1])
+    (path,) = save(replays(compared[1], CONTACT), tmp_path, "comparison", ["svg"])
     text = path.read_text()
     for words in (*KINDS, "recorded", "chest pitch", "Tilt3"):
         assert words in text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from unittest.mock import patch
 
@@ -228,9 +229,9 @@ def test_the_motion_found_is_at_its_limits_and_not_beyond() -> None:
 def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
     """On other frequencies, too: the best of all beginnings, each of which has its own."""
 
-    def found(seed: int) -> tuple[Lines, np.ndarray]:
+    def found(seed: int) -> tuple[int, Lines, np.ndarray]:
         with patch.object(search, "TRIES", 1), patch.object(search, "STARTS", 2):
-            return best_motion(reach_on, 20.0, "A", seed)
+            return best_motion([reach_on], 20.0, "A", seed)
 
     def reach_on(lines: Lines) -> Reach:
         reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
@@ -239,12 +240,33 @@ def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
 
     told, tried = design_samples.told(), list[np.ndarray]()
     with patch.object(cores, "usable_cores", lambda: 1):
-        lines, motion = found(2)
-        assert np.array_equal(motion, found(2)[1])
+        _, lines, motion = found(2)
+        assert np.array_equal(motion, found(2)[2])
         own, others = tried[:2]
         assert not np.array_equal(own, others)
         assert any(np.array_equal(lines.frequencies, each) for each in (own, others))
-        assert not np.array_equal(lines.frequencies, found(3)[0].frequencies)
+        assert not np.array_equal(lines.frequencies, found(3)[1].frequencies)
+
+
+def test_beginnings_take_the_stances_in_turn_and_the_best_one_stands_as_its_own_did() -> None:
+    def reach_of(stance: int) -> Callable[[Lines], Reach]:
+        def reach_on(lines: Lines) -> Reach:
+            reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
+            stances.append((stance, lines.frequencies))
+            return reach.held(np.full((1, len(KINDS)), 1.0 if stance == 1 else 0.1))
+
+        return reach_on
+
+    told, stances = design_samples.told(), list[tuple[int, np.ndarray]]()
+    with (
+        patch.object(cores, "usable_cores", lambda: 1),
+        patch.object(search, "TRIES", 1),
+        patch.object(search, "STARTS", 4),
+    ):
+        stance, lines, _ = best_motion([reach_of(0), reach_of(1)], 20.0, "A", 2)
+    assert [each for each, _ in stances] == [0, 1, 0, 1]
+    assert stance == 1, "whose limits are wider"
+    assert any(np.array_equal(lines.frequencies, own) for each, own in stances if each == 1)
 
 
 def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:

@@ -10,6 +10,7 @@ import design_samples
 from plantar.contact.balance import planned_wrench
 from plantar.conventions import GRAVITY
 from plantar.design.family import CHANNELS
+from plantar.design.legs import Legs
 from plantar.errors import MotionError
 from plantar.twin.robots import hrp2
 
@@ -56,6 +57,23 @@ def test_standing_puts_the_centre_over_the_bushes_with_bent_knees() -> None:
     model = hrp2.robot().floating_model
     for joint in ("LLEG_JOINT3", "RLEG_JOINT3"):
         assert rest[model.joints[model.getJointId(joint)].idx_q] > 0.2
+
+
+def test_with_a_foot_ahead_the_centre_goes_across_the_line_of_the_feet_and_along_it() -> None:
+    """The robot leans about that line: what goes along it only leads the load from foot to foot."""
+    legs = Legs.of(hrp2.robot(), hrp2.postures().standing, 0.05)
+    assert legs.ahead == pytest.approx(0.05, abs=1e-6)
+    assert design_samples.legs().ahead == pytest.approx(0.0, abs=1e-6)
+    (_, before), (_, after) = (
+        frames(legs.follow(moved(**{way: 0.01})[:, None])[0]) for way in ("centre_x", "centre_y")
+    )
+    bushes = legs.rest[2]
+    line = bushes["left"].translation - bushes["right"].translation
+    assert line[:2] == pytest.approx([-0.05, 0.19], abs=1e-3)
+    across, along = (data.com[0] - legs.rest[1] for data in (before, after))
+    assert across @ line == pytest.approx(0.0, abs=1e-5)
+    assert across[0] > 0.009
+    assert along == pytest.approx(0.01 * line / np.linalg.norm(line), abs=1e-5)
 
 
 def test_what_is_out_of_reach_is_refused() -> None:

@@ -68,6 +68,23 @@ def test_a_sway_to_the_left_loads_the_left_foot() -> None:
     assert moment == pytest.approx(10.0, rel=1e-3)
 
 
+def test_with_a_foot_ahead_the_lean_rolls_the_ankles_most_on_soft_feet() -> None:
+    """About the line through the bushes, on which two springs stand against gravity; beside one another they do not."""
+    slow, row = window(TIME, 1.0, 18.0, 5.0), TIME.size // 2
+    ahead = {"left": np.array([-0.025, 0.1]), "right": np.array([0.025, -0.1])}
+    line = (ahead["right"] - ahead["left"]) / np.linalg.norm(ahead["right"] - ahead["left"])
+    stiff = replace(BUSH, vertical=1e9)  # soles do not sink: nothing but that lean is left
+    weight = PENDULUM.mass * GRAVITY * PENDULUM.height
+    asked = np.stack([0 * TIME, 2.0 * slow * line[0], 2.0 * slow * line[1]])
+    for stiffness in (250.0, 1000.0):
+        bush = replace(stiff, stiffness=stiffness)
+        bent = respond(replace(PENDULUM, places=ahead), bush, asked, flat(), PERIOD).deflection["left"]
+        lean = 2.0 / (2 * stiffness - weight)
+        assert bent[::-1, row] == pytest.approx(lean * line, rel=0.02)
+        beside = respond(PENDULUM, bush, asked, flat(), PERIOD).deflection["left"]
+        assert np.abs(beside[1]).max() < 1e-3 * np.abs(bent[1]).max()
+
+
 @pytest.mark.parametrize("size", [2.0, -3.0])
 def test_twice_the_motion_is_twice_the_response(size: float) -> None:
     wrench = np.stack([SWAY, SWAY**2, SWAY])

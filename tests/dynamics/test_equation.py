@@ -189,8 +189,8 @@ def test_the_kept_equation_is_given_back_when_python_ends() -> None:
     """Else nanobind prints a list of leaks below what a command says. What is registered first is called last."""
     program = (
         "import atexit, sys\n"
-        "atexit.register(lambda: print(sys.modules['plantar.dynamics'].equation_of.cache_info().currsize))\n"
-        "from plantar.dynamics import equation_of\n"
+        "atexit.register(lambda: print(sys.modules['plantar.dynamics.equation'].equation_of.cache_info().currsize))\n"
+        "from plantar.dynamics.equation import equation_of\n"
         "from plantar.twin.robots import hrp2\n"
         "equation_of(hrp2.robot().floating_model)\n"
         "print(equation_of.cache_info().currsize)"

@@ -22,9 +22,9 @@ from plantar.dynamics import (
     model_parameters,
     pinocchio_motion,
     regressor,
-    solve_triangle,
-    stacked,
 )
+from plantar.dynamics.fit import solve_triangle
+from plantar.dynamics.stream import stacked
 from plantar.errors import DataError, RobotError
 
 

@@ -12,6 +12,7 @@ from plantar.estimation.residual_covariance import (
     interval95,
     pooled_freedom,
     relative_std_percent,
+    score_cosines,
 )
 
 
@@ -80,3 +81,8 @@ def test_the_mean_of_scores_is_no_cosine() -> None:
     scores = np.random.default_rng(3).normal(size=(400, 1))
     plain, moved = (cosine_covariance(scores + mean, 40.0)[0][0, 0] for mean in (0.0, 5.0))
     assert moved == pytest.approx(plain, rel=1e-9)
+
+
+def test_two_scores_have_one_cosine_whose_square_is_twice_their_variance() -> None:
+    root = score_cosines(np.array([[1.0], [4.0]]), 1.0)
+    np.testing.assert_allclose(root**2, [[9.0]])

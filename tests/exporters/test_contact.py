@@ -65,12 +65,12 @@ def test_the_file_that_a_user_gets_turns_as_identified(
     mujoco.mj_kinematics(model, data)
     ankle, pelvis = model.body(f"{foot}_ankle").id, model.body("pelvis").id
     k, c, _ = TRUTH[foot][axis]
-    place = {"roll": 0, "pitch": 1}[axis]
+    in_ankle = bush_rotation(foot)[:, {"roll": 0, "pitch": 1}[axis]]
 
     def pushed(torque: float) -> float:
         """Turn about the bush's axis after one step under a load straight down at the bush centre and a torque."""
         turn = data.xmat[ankle].reshape(3, 3)
-        bush_axis = turn @ bush_rotation(foot)[:, place]
+        bush_axis = turn @ in_ankle
         at = data.xpos[ankle] + turn @ CENTRE
         x, y, _ = at - data.xipos[pelvis]
         data.xfrc_applied[pelvis, 2] = -share * weight

@@ -57,6 +57,20 @@ def test_points_add_up_to_the_springs_and_dampers_asked_for(foot: PointFoot) -> 
         assert min(sides) < 0 < max(sides)
 
 
+@pytest.mark.parametrize(
+    ("pitch", "roll", "length", "width"),
+    [(1.0, 1.0, 1.0, 1.0), (1.0, 2.0, 1.0, np.sqrt(2)), (2.0, 1.0, np.sqrt(2), 1.0), (1.0, 3.0, 1.0, 1.5)],
+)
+def test_points_stand_outside_the_sole_only_as_far_as_its_shape_asks_for(
+    pitch: float, roll: float, length: float, width: float
+) -> None:
+    """Springs at the corners hold K of pitch and roll as the squares of the sole's sides: 0.13·0.09 and 0.06·0.05."""
+    stiffness: dict[Axis, float] = {"pitch": 40e3 * 0.13 * 0.09 * pitch, "roll": 40e3 * 0.06 * 0.05 * roll}
+    found = points_for(stiffness, {"pitch": 15.0, "roll": 15.0}, sides_of(FOOT), 0.1, WEIGHT, 0.2)
+    assert max(p.x for p in found.points) == pytest.approx(0.13 * length)
+    assert max(p.y for p in found.points) == pytest.approx(0.06 * width)
+
+
 @pytest.mark.parametrize("load", [0.1 * WEIGHT, 0.5 * WEIGHT, WEIGHT])
 def test_a_load_is_carried_by_what_touches(foot: PointFoot, load: float) -> None:
     """Below the share that edges carry alone the middle point does not touch."""
@@ -130,10 +144,14 @@ def test_what_a_foot_alone_shows_is_checked_over_loads_steps_and_angles(
 ) -> None:
     """K is 4 % off at each load, C 10 %, 20 % at steps of 2 ms; far out K is 30 % off."""
 
-    def shown(_: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
-        k = 0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04
-        return Measured(k * STIFFNESS[axis], (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+    def stands(_: PointFoot, axis: Axis, load: float, step: float, share: float) -> float:
+        return (0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04) * STIFFNESS[axis]
 
+    def shown(foot: PointFoot, axis: Axis, load: float, step: float) -> Measured:
+        held = stands(foot, axis, load, step, MARKED)
+        return Measured(held, (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+
+    monkeypatch.setattr(fit, "standing_stiffness", stands)
     monkeypatch.setattr(fit, "measured", shown)
     found = fit._check(foot, "pitch", STIFFNESS["pitch"], DAMPING["pitch"], WEIGHT)
     assert (found.stiffness_error, found.damping_error) == pytest.approx((0.04, 0.1))

@@ -40,6 +40,13 @@ def test_a_position_that_stands_while_its_velocity_turns_is_refused(
         identify_feet(robot, [log])
 
 
+def test_a_time_of_an_epoch_s_clock_is_told_to_the_sample(robot: RobotModel) -> None:
+    log = held(record(sway(duration=10.0)), 400, 700)
+    late = MotionLog("late", log.time + 1_700_000_000, log.columns)
+    (text,) = (finding.text for finding in check_channels(robot, late) if "its velocity" in finding.text)
+    assert "t = 1700000004 to 1700000006.99 s" in text
+
+
 def test_dead_encoders_are_told_in_the_order_of_their_names(robot: RobotModel) -> None:
     log = record(sway())
     joints = [f"{foot}_ankle_{axis}" for foot in ("left", "right") for axis in ("pitch", "roll")]

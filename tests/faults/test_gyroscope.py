@@ -166,6 +166,14 @@ def written_with(log: MotionLog, digits: int) -> MotionLog:
     return log.with_columns({name: np.round(log.column(name), digits) for name in names})
 
 
+@pytest.mark.parametrize("later", [60.0, 3600.0, 1.7e9])
+def test_a_clock_that_was_set_on_the_way_makes_no_fault_of_the_gyroscope(
+    log: MotionLog, later: float
+) -> None:
+    set_anew = np.where(np.arange(len(log)) < len(log) // 2, log.time, log.time + later)
+    assert codes(MotionLog("set", set_anew, log.columns)) == []
+
+
 def test_few_digits_of_the_orientation_are_no_gain_of_the_gyroscope(log: MotionLog) -> None:
     """Steps of 2 mrad beside turns of some mrad: the slope over them is too small, and tells of the steps."""
     few = written_with(small(log, 0.03), 3)

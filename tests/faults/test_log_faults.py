@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from biped import WEIGHT, Motion, record, sines, sway
 from biped_robot import FEET, Frame, Mounting, make_robot
 from plantar.errors import DataError
-from plantar.faults.log_faults import check_log
+from plantar.faults.log_faults import _joints, check_log
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
@@ -204,6 +204,14 @@ def test_a_coarse_sensor_that_is_hardly_loaded_is_not_dead(robot: RobotModel, lo
     assert check_log(robot, constant("wrench.left.torque.x")(log.with_columns(coarse))) == []
     found = check_log(robot, constant("wrench.left.torque.x")(log))
     assert "dead_channel" in {finding.code for finding in found}
+
+
+def test_a_joint_that_goes_from_limit_to_limit_in_degrees_is_told(robot: RobotModel, log: MotionLog) -> None:
+    place = robot.model.idx_qs[robot.joint_names.index("neck") + 1]
+    lower, upper = robot.model.lowerPositionLimit[place], robot.model.upperPositionLimit[place]
+    travel = np.degrees(np.linspace(lower, upper, len(log)))
+    (found,) = _joints(robot, log.with_columns({"joint.neck.position": travel}))
+    assert (found.code, found.fatal) == ("degrees", True)
 
 
 def test_a_joint_beyond_its_limit_is_a_warning_only(robot: RobotModel, log: MotionLog) -> None:

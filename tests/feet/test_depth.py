@@ -12,7 +12,7 @@ from types import FrameType
 import pytest
 
 import plantar
-from biped import record, sway
+from biped import SLIPPING, record, sway
 from biped_robot import make_robot
 from feet_trials import PUNCTUAL, noisy
 from plantar import cores
@@ -104,6 +104,17 @@ def test_logs_that_ask_for_delays_and_a_choice_of_models(tmp_path: Path) -> None
         "contact/deflection.py",
         "foot_fit.py:fit_foot",
         "model_fit.py:refine",
+    )
+
+
+def test_a_memory_beside_an_attitude_that_drifts(tmp_path: Path) -> None:
+    assert_shallow(
+        make_robot(tmp_path),
+        [noisy(record(sway("sway", 4, duration=12.0, truth=SLIPPING)), 2)],
+        FeetSettings(model="elastoplastic", wrench_delay=0.0),
+        DEEPEST,
+        "angle_drift.py:beside_drift",
+        "models/elastoplastic.py",
     )
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from biped import record, sway
 from plantar import cores
-from plantar.feet.first_look import checked_in_turn, look_at, looked_at
+from plantar.feet.first_look import looked_at
 from plantar.feet.identify import identify_feet
 from plantar.logs.inputs import WaitingLogs, logs_of
 from plantar.logs.save import save_log
@@ -63,7 +63,9 @@ def test_a_look_is_the_same_at_files_and_at_logs_in_turn(robot: RobotModel, file
     assert isinstance(waiting, WaitingLogs)
     assert waiting.bounded
     together = looked_at(robot, waiting, True)
-    in_turn = [look_at(robot, True, log) for log in checked_in_turn(robot, iter(waiting))]
+    done = list[str]()
+    in_turn = looked_at(robot, iter(waiting), True, lambda: done.append("meanwhile"))
+    assert done == ["meanwhile"]
     for one, other in zip(together, in_turn, strict=True):
         assert one.log.name == other.log.name
         assert one.log.time.tobytes() == other.log.time.tobytes()

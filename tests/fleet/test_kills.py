@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -17,14 +18,21 @@ from command_line import run
 from fleet_samples import small_fleet
 
 GROUPS = 8
-OPTIONS = ("--workers", "1", "--model", "kelvin_voigt", "--quiet")
+OWN = ("--workers", "1")
 PATIENCE = 60.0  # s
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
 
 
-def command(folder: Path, out: str) -> list[str]:
-    return ["fleet", "run", str(folder / "fleet.csv"), "--out", str(folder / out), *OPTIONS]
+def command(folder: Path, out: str, workers: tuple[str, str]) -> list[str]:
+    told = ("--out", str(folder / out), "--model", "kelvin_voigt", "--quiet")
+    return ["fleet", "run", str(folder / "fleet.csv"), *told, *workers]
+
+
+@pytest.fixture(scope="module")
+def running(client: Any) -> tuple[str, str]:
+    """A worker that is there already: to start one takes longer than all that it does here."""
+    return "--scheduler", client.scheduler.address
 
 
 def units(folder: Path) -> dict[Path, int]:
@@ -48,19 +56,19 @@ def wait_until(ready: Callable[[], bool]) -> None:
 
 
 @pytest.fixture(scope="module")
-def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def fleet(tmp_path_factory: pytest.TempPathFactory, running: tuple[str, str]) -> Path:
     """A fleet and its undisturbed result in `undisturbed`."""
     folder = tmp_path_factory.mktemp("fleet")
     small_fleet(folder, GROUPS)
-    assert run(*command(folder, "undisturbed")) == 0
+    assert run(*command(folder, "undisturbed", running)) == 0
     return folder
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("killed", ["driver", "workers"])
-def test_what_is_killed_goes_on(fleet: Path, killed: str) -> None:
+def test_what_is_killed_goes_on(fleet: Path, killed: str, running: tuple[str, str]) -> None:
     out = fleet / killed
-    started = subprocess.Popen([sys.executable, "-m", "plantar", *command(fleet, killed)], cwd=fleet)
+    started = subprocess.Popen([sys.executable, "-m", "plantar", *command(fleet, killed, OWN)], cwd=fleet)
     try:
         wait_until(lambda: len(units(out)) >= 3)
         finished = units(out)
@@ -69,7 +77,7 @@ def test_what_is_killed_goes_on(fleet: Path, killed: str) -> None:
             started.wait()
             finished = units(out)
             assert len(finished) < GROUPS
-            assert run(*command(fleet, killed)) == 0
+            assert run(*command(fleet, killed, running)) == 0
         else:
             for process in children(started.pid):
                 os.kill(process, signal.SIGKILL)

@@ -177,7 +177,9 @@ def test_workers_elsewhere_find_what_is_named_from_here(
     assert len(list(Path("out/units").rglob("*.json"))) == 1
 
 
-def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_ends_with_the_counts(
+    client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (name,) = make_logs(tmp_path, 1)
     rows = [("good", "robot.yaml", name, "", "", ""), ("bad", "robot.yaml", "gone.parquet", "", "", "")]
     manifest = write_manifest(tmp_path / "fleet.csv", rows)
@@ -187,8 +189,8 @@ def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.Capture
         manifest,
         "--out",
         tmp_path / "out",
-        "--workers",
-        "1",
+        "--scheduler",
+        client.scheduler.address,
         "--model",
         "kelvin_voigt",
     ]
@@ -204,7 +206,7 @@ def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.Capture
     assert run("fleet", "report", tmp_path / "out") == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "out" / "fleet.html")
     assert "results.parquet: does not exist" in refused(capsys, "fleet", "report", tmp_path)
-    assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2
+    assert run(*command, "--workers", "1") == 2
 
 
 def test_what_another_machine_could_do_is_tried_again(tmp_path: Path) -> None:

@@ -11,7 +11,10 @@ import pytest
 from biped import record, sway
 from example_robots import talos_file
 from plantar.errors import LogError
+from plantar.logs.inputs import logs_of
 from plantar.logs.motion_log import COLUMN, MotionLog, imu_columns
+from plantar.logs.readers import open_log
+from plantar.logs.save import save_log
 from plantar.notes import Note
 from plantar.robot.model import RobotModel, load_robot
 
@@ -161,6 +164,26 @@ def test_only_joints_that_no_foot_needs_are_cut_short(tmp_path: Path) -> None:
     needed = [f"joint.{name}.position" for name in on_path[:6]]
     (note,) = MotionLog("a", bare, {k: v for k, v in every.items() if k not in needed}).joint_notes(robot)
     assert note.text.endswith(", ".join(on_path[:6]))
+
+
+def test_a_position_that_never_holds_a_value_was_not_recorded(tmp_path: Path, robot: RobotModel) -> None:
+    """It would empty every row, and feet that stand would be said to carry nothing."""
+    empty = np.full(5, np.nan)
+    half = np.array([np.nan, 1.0, np.nan, 2.0, 3.0])
+    columns = {
+        "joint.left_ankle_pitch.position": empty,
+        "joint.neck.position": half,
+        "joint.neck.effort": empty,
+    }
+    log = MotionLog("empty", 0.01 * np.arange(5), columns)
+    save_log(log, tmp_path / "empty.csv")
+    for found in (open_log(tmp_path / "empty.csv", robot), *logs_of(log, robot)):
+        assert list(found.columns) == ["joint.neck.position", "joint.neck.effort"]
+        (note,) = (note for note in found.notes if note.code == "joint_empty")
+        assert "joint.left_ankle_pitch.position" in note.text
+        assert np.isfinite(found.positions(robot)[1]).all()
+    whole = log.without_empty_joints()
+    assert whole.without_empty_joints() is whole
 
 
 def test_selecting_and_adding_leave_the_original_alone() -> None:

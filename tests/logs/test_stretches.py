@@ -96,10 +96,11 @@ def test_a_clock_in_other_units_is_left_to_those_who_tell_it(unit: float) -> Non
     assert most_moving(wrong) is wrong
 
 
-def test_other_sensors_do_not_choose() -> None:
-    log = long_log(x=moving(TIME, [(300.0, 420.0)], 0.5))
+@pytest.mark.parametrize("foot", ["left", "foot.left"])
+def test_other_sensors_do_not_choose(foot: str) -> None:
+    own = {f"wrench.{foot}.torque.x": moving(TIME, [(300.0, 420.0)], 0.5)}
     hands = {f"wrench.hand.torque.{axis}": moving(TIME, [(900.0, 1800.0)], 1.0, 50.0) for axis in "xyz"}
-    found = most_moving(MotionLog("long", log.time, {**hands, **log.columns}), {"left"})
+    found = most_moving(MotionLog("long", TIME + 5.0, {**hands, **own}), {foot})
     assert {5, 6} <= starts_of(found)
 
 

@@ -49,8 +49,16 @@ def air(path: Array, first: float) -> float:
 
 
 @pytest.mark.parametrize("first", [-0.5, 0.8])
-def test_the_state_at_a_landing_is_what_the_air_left(first: float) -> None:
-    stances, truth = followed([(0.004, 0.015), (-0.002, 0.006), (0.006, -0.015), (0.001, 0.012)], first)
+@pytest.mark.parametrize(
+    "ends",
+    [
+        [(0.004, 0.015), (-0.002, 0.006), (0.006, -0.015), (0.001, 0.012)],
+        # Landings near where the foot was lifted: in the air the element slipped, and turned.
+        [(0.004, 0.03), (0.02, -0.03), (-0.018, 0.03), (0.022, 0.01)],
+    ],
+)
+def test_the_state_at_a_landing_is_what_the_air_left(ends: list[tuple[float, float]], first: float) -> None:
+    stances, truth = followed(ends, first)
     bush = Hysteresis(
         MODELS["elastoplastic"], np.array([K, 10.0, SLIP_TORQUE]), np.array([SLIP_ANGLE]), OFFSET
     )

@@ -22,7 +22,7 @@ from plantar.errors import DataError
 from plantar.estimation.slow_drift import drift_basis
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces, fit_all
-from plantar.model_selection.model_fit import fit_model, refine
+from plantar.model_selection.model_fit import ModelFit, fit_model, refine
 from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.model_selection.selection import choose_model
 from plantar.model_selection.variable_projection import Problem, best_candidate
@@ -79,6 +79,30 @@ def test_a_law_recovers_its_own_parameters(name: str) -> None:
     np.testing.assert_allclose(fit.values[2:], values[2:], rtol=0.01)
     np.testing.assert_allclose(fit.shape, shape, rtol=0.02)
     assert fit.doubts == ()
+
+
+@pytest.mark.parametrize(
+    ("together", "apart", "told"),
+    [
+        (0.9, 0.02, True),  # slips one way alone: torque and angle any, but one over the other
+        (0.9, 0.6, False),  # does not slip: how stiff it is, beside the spring, does not show either
+        (0.02, 0.6, True),  # the torque by itself
+    ],
+)
+def test_an_element_is_told_by_its_torque_or_by_how_stiff_it_is_before_it_slips(
+    together: float, apart: float, told: bool
+) -> None:
+    """Of logarithms: the torque is as unsure as `together`, the angle by `apart` more."""
+    log = np.diag([0.01, 0.01, 0.0, 0.0]) ** 2
+    log[2:, 2:] = together**2 + np.diag([0.0, apart**2])
+    values, shape = np.array([150.0, 6.0, 1.05]), np.array([0.0101])
+    size = np.append(values, shape)
+    fit = ModelFit(
+        Elastoplastic(), values, shape, log * np.outer(size, size), np.full(4, 12.0), 0.01 * size,
+        {}, {}, {}, {"sway": np.zeros(9)}, np.array([[1e-4], [0.013]]), 5.0, False,
+    )  # fmt: skip
+    assert bool(fit.doubts) != told
+    assert all("cannot be told from zero: slip_torque 1.05" in line for line in fit.doubts)
 
 
 def test_kelvin_voigt_is_plain_least_squares() -> None:

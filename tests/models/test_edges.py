@@ -46,3 +46,14 @@ def test_friction_turns_over_a_share_of_the_fast_rate() -> None:
     found = MODELS["coulomb"].candidates([SWAY])[:, 0]
     fast = np.percentile(np.abs(SWAY.rate), 98)
     assert found == pytest.approx(fast * 0.003 * 100 ** (np.arange(9) / 8))
+
+
+@pytest.mark.parametrize("name", ["elastoplastic", "iwan"])
+def test_a_slip_angle_beyond_four_fifths_of_the_swing_is_hardly_shown(name: str) -> None:
+    model = MODELS[name]
+    shapes = model.candidates([SWAY])
+    limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
+    for share, shown in ((0.79, True), (0.81, False)):
+        shape = limits[1].copy()
+        shape[0] = share * SWAY.swing
+        assert (model.hardly_shown(shape, limits) is None) == shown

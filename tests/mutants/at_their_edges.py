@@ -177,8 +177,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "feet/assess/residual_table.py",
         "centre of pressure of the other axis",
-        '"cop_x": _single(bush.cop[:, 0])',
-        '"cop_x": _single(bush.cop[:, 1])',
+        '"cop_x": single(bush.cop[:, 0])',
+        '"cop_x": single(bush.cop[:, 1])',
         ("feet/assess/test_residual_table.py",),
     ),
     Mutant(

@@ -64,8 +64,8 @@ DRAWN_LAST = (
     Mutant(
         "exporters/contact/fit.py",
         "K holds as far as it was tried",
-        "if not all(errors(one)",
-        "if not any(errors(one)",
+        "if not all(abs(one",
+        "if not any(abs(one",
         ("exporters/test_points.py",),
     ),
     Mutant(

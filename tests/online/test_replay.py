@@ -78,7 +78,7 @@ def test_a_number_may_be_used_once_it_is_known_within_a_tenth(name: str) -> None
     assert judged(10.1).value is None
     near, far = judged(0.05), judged(0.4)
     assert near.reason == ""
-    assert f"± 40 % so far; known from ± {100 * most:.0f} % on" in far.reason
+    assert f"± 40 % so far; enough from ± {100 * most:.0f} % on" in far.reason
     assert far.value is not None
     assert far.interval95 is not None
     if name == "z":
@@ -102,7 +102,7 @@ def test_how_long_a_step_takes_is_told_in_microseconds() -> None:
     ("flag", "word"),
     [
         (Flag.PITCH_UNTESTED, "too small"),
-        (Flag.PITCH_MEMORY, "memory"),
+        (Flag.PITCH_MEMORY, "hysteresis"),
         (Flag.LATE_WRENCH, "delay"),
         (Flag.LATE_IMU, "IMU"),
     ],
@@ -123,7 +123,7 @@ def test_a_stiffness_that_rests_on_what_was_told_is_weak_and_its_damping_is_not(
         if row.axis == "pitch"
     }
     assert rows["stiffness"].verdict == "weak"
-    assert "slip torque that was told" in rows["stiffness"].reason
+    assert "slip torque that was given" in rows["stiffness"].reason
     assert rows["damping"].verdict == "usable"
 
 
@@ -134,6 +134,6 @@ def test_a_damping_below_zero_is_none() -> None:
 
     for half in (0.5, 10.0, 19.9):
         assert judged(half).verdict == "unidentifiable"
-        assert "below zero" in judged(half).reason
+        assert "negative" in judged(half).reason
         assert "--wrench-delay" in judged(half).advice
-    assert "below zero" not in judged(20.1).reason, "it may be above"
+    assert "negative" not in judged(20.1).reason, "it may be above"

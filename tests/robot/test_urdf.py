@@ -41,6 +41,7 @@ def test_a_plain_one_is_read() -> None:
         ('"1e1"', '"7,26"', "robot.urdf, value '7,26': value of <mass> in link 'trunk' (valid: a number)"),
         ('"1e1"', '"nan"', "value 'nan': value of <mass>"),
         ('"1e1"', '"-2"', "value '-2': the mass of link 'trunk' is negative"),
+        ('xyz="0 1 0"', 'xyz="0 0 0"', "value '0 0 0': axis of revolute joint 'ankle' has no direction"),
         ('iyy="1"', 'iyy="1 2"', "value '1 2': iyy of <inertia> in link 'trunk'"),
         ('"0 0 .1"', '"0 0"', "value '0 0': xyz of <origin> in link 'trunk' (valid: 3 numbers"),
         ('rpy="0 0 0"', 'rpy="0 0 0,5"', "rpy of <origin> in joint 'ankle'"),
@@ -83,6 +84,21 @@ def test_a_world_over_which_the_trunk_floats_is_left_out(tmp_path: Path) -> None
 def test_a_floating_joint_on_something_else_stays(world: str, tmp_path: Path) -> None:
     urdf = PLAIN.replace("</robot>", world)
     assert as_read(urdf, tmp_path) == urdf
+
+
+def test_a_fixed_joint_may_have_an_axis_without_direction() -> None:
+    """As SolidWorks writes them."""
+    fixed = PLAIN.replace('type="revolute"', 'type="fixed"').replace('xyz="0 1 0"', 'xyz="0 0 0"')
+    assert parse_urdf(fixed, FILE, floating=False).njoints == 1
+
+
+def test_a_joint_that_no_tree_holds_is_told_with_its_file(tmp_path: Path) -> None:
+    path = write_robot(tmp_path)
+    urdf = load_robot(path).urdf_path
+    urdf.write_text(urdf.read_text().replace('name="neck" type="revolute"', 'name="neck" type="planar"'))
+    with pytest.raises(RobotError, match=rf"{urdf.name}: joint 'neck' is of type Planar") as caught:
+        _ = load_robot(path).tree
+    assert str(caught.value).count("neck") == 1
 
 
 def test_a_robot_without_weight_is_refused(tmp_path: Path) -> None:

@@ -82,6 +82,16 @@ def test_one_channel_at_zero_is_no_device_that_dropped_out(kind: str) -> None:
     assert without_dropouts(log) is log
 
 
+def test_sensors_whose_names_hold_dots_drop_out_each_by_itself() -> None:
+    read, gone = dropping(LOAD)
+    columns = {"wrench.foot.left.force.z": read, "wrench.foot.left.torque.x": np.zeros_like(read)}
+    log = MotionLog("dots", TIME, columns | {"wrench.foot.right.force.z": 500 - LOAD})
+    mended = without_dropouts(log)
+    inner = gone & (TIME < 39.5)
+    assert all(np.isnan(mended.column(name)[inner]).all() for name in columns)
+    assert np.isfinite(mended.column("wrench.foot.right.force.z")).all()
+
+
 def test_a_foot_in_the_air_does_not_drop_out() -> None:
     """Its driver cuts what is small: it leaves zero and comes back to it at once, while the other foot carries all."""
     load, _ = dropping(LOAD, length=400)

@@ -68,15 +68,16 @@ _searched: dict[bytes, np.ndarray] = {}
 
 
 def gentle_motion(
-    reach_on: Callable[[Lines], Reach], duration: float, criterion: Criterion, seed: int, *_: object
-) -> tuple[Lines, np.ndarray]:
-    """Well within its limits, so that the first rehearsal holds; what comes from one seed is searched for once."""
+    stances: Sequence[Callable[[Lines], Reach]], duration: float, criterion: Criterion, seed: int, *_: object
+) -> tuple[int, Lines, np.ndarray]:
+    """Side by side and well within its limits, so that the first rehearsal holds; what comes from one seed is searched
+    for once."""
     lines = Lines.drawn(duration, np.random.default_rng(seed))
-    reach = reach_on(lines)
+    reach = stances[0](lines)
     key = pickle.dumps((lines, reach.bushes, criterion))
     if key not in _searched:
         _searched[key] = 0.4 * from_one_beginning(reach, criterion, seed)
-    return lines, _searched[key]
+    return 0, lines, _searched[key]
 
 
 class RehearsedOnce:

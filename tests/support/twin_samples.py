@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
+from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
 from plantar.motions import Plan, Walk
 from plantar.motions.body import Body
@@ -14,7 +16,7 @@ from plantar.motions.gait import Gait
 from plantar.motions.stance import stand
 from plantar.motions.walk import walk_plan
 from plantar.robot.model import RobotModel
-from plantar.twin import cache as kept
+from plantar.twin import cache
 from plantar.twin.keep import plan_arrays, plan_from
 from plantar.twin.play import planned, rolled
 from plantar.twin.presets import preset_named
@@ -52,7 +54,7 @@ def planned_part(motion: str, robot: RobotModel, **options: float | None) -> Pla
     return short(planned(motion, robot, **options), *PARTS[motion])
 
 
-@cache
+@functools.cache
 def plan(motion: str) -> Plan:
     return planned(motion, hrp2.robot())
 
@@ -62,33 +64,32 @@ def roll(played: Plan, physics: Physics | None = None) -> Rollout:
     return roll_out(hrp2.robot(), played, physics, scene_xml(hrp2.robot(), played, physics))
 
 
-@cache
+@functools.cache
 def swayed() -> Rollout:
     """Six seconds of the right foot's manual roll on the paper's bushes."""
     return rolled(short(plan("Manual_right_roll"), 10.0, 16.0), hrp2.robot(), Physics())
 
 
-@cache
+@functools.cache
 def tilted() -> Rollout:
     """Four seconds of Tilt3 on the paper's bushes."""
     return rolled(short(plan("Tilt3"), 2.0, 6.0), hrp2.robot(), Physics())
 
 
-@cache
+@functools.cache
 def flung() -> Rollout:
     """Three seconds of Myrand5 on the paper's bushes."""
     return rolled(short(plan("Myrand5"), 10.0, 13.0), hrp2.robot(), Physics())
 
 
-@cache
+@functools.cache
 def walked() -> MotionLog:
     """Ten steps of 15 cm, read by sensors with noise and offsets; each foot was zeroed in the air."""
     robot, gait = hrp2.robot(), Gait(step=0.15, period=0.9, turn=0.0, steps=10, trial=1)
-    key = kept.key("walk", repr(gait))
-    if (arrays := kept.load(key)) is not None:  # of another process
-        played = plan_from("Walk15", arrays)
-    else:
+
+    def made() -> Mapping[str, Array]:
         body = Body(robot)
-        played = walk_plan(body, "Walk15", stand(body, hrp2.postures().standing, {}), gait)
-        kept.save(key, plan_arrays(played))
+        return plan_arrays(walk_plan(body, "Walk15", stand(body, hrp2.postures().standing, {}), gait))
+
+    played = plan_from("Walk15", cache.kept(cache.key("walk", repr(gait)), made))
     return record(rolled(played, robot, Physics()), robot, Physics(), preset_named("sensors"), 0).log

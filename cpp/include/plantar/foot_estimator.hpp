@@ -54,7 +54,7 @@ enum Flag : std::uint32_t {
   // Gyroscope and attitude turn differently, the feet do not carry the weight, or a torque follows no bush's
   // deflection.
   CONTRADICTION = 1 << 15,
-  LATE_WRENCH = 1 << 16,  // torques follow deflections as if the force sensors' delay were not the one that was told
+  LATE_WRENCH = 1 << 16,  // torques follow deflections as if the force sensors' delay were not the one that was given
   LATE_IMU = 1 << 17      // or as if the IMU were behind the encoders, or before them
 };
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.results.feet import Comparison, FeetResult, ValidationRow
+from plantar.results.feet import FeetResult, ValidationRow
 from plantar.twin.bush import Bush, Feet
 
 
@@ -151,8 +151,3 @@ def _pooled(group: list[ValidationRow]) -> tuple[float, float]:
     samples = sum(row.samples for row in group)
     mean = sum(row.mean_abs_error * row.samples for row in group) / samples
     return mean, max(row.max_abs for row in group)
-
-
-def comparison(name: str, result: FeetResult) -> Comparison:
-    """The same logs under another choice, as `result.json` holds it."""
-    return Comparison(name, result.settings, result.parameters, result.validation)

@@ -13,7 +13,6 @@ from plantar.campaign.compared import (
     CrossBeside,
     DirectBeside,
     ParameterBeside,
-    comparison,
     cross_beside,
     direct_beside,
     parameters_beside,
@@ -27,7 +26,7 @@ from plantar.logs.readers import open_log
 from plantar.motions import CAMPAIGN, FIT
 from plantar.motions.select_motions import Selection, select_motions
 from plantar.notes import Note
-from plantar.results.feet import FeetResult
+from plantar.results.feet import Comparison, FeetResult
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.uncertainty import EXACT
 from plantar.twin import PAPER, TwinRecording, play, play_all, write_campaign
@@ -130,7 +129,9 @@ def run_campaign(
     progress("save the numbers")
     result = replace(
         result,
-        comparisons=(comparison(PAPER_WAY_NAME, paper_way),),
+        comparisons=(
+            Comparison(PAPER_WAY_NAME, paper_way.settings, paper_way.parameters, paper_way.validation),
+        ),
         campaign=_as_data(campaign, preset, seed, truth),
     )
     campaign = replace(campaign, result=result)

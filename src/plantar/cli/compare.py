@@ -50,7 +50,9 @@ def run(
     """
     with needs("mujoco", "twin", "plantar compare"):
         from plantar.comparison.compare import SIMULATORS, compare, pooled
-        from plantar.comparison.picture import write_picture
+        from plantar.comparison.scenes import CONTACT
+        from plantar.report.figures.plots import save
+        from plantar.report.figures.simulation import replays
     if simulator not in SIMULATORS:
         raise PlantarError("unknown simulator", value=simulator, valid=", ".join(SIMULATORS))
     if out is not None:
@@ -66,7 +68,7 @@ def run(
     if out is not None:
         write_text(out / "comparison.json", content)
         if replayed:
-            write_picture(out, replayed)
+            save(replays(replayed, CONTACT), out, "comparison", ["svg"])
     if json:
         print(content, end="")
     elif not quiet:

@@ -30,28 +30,32 @@ def run(
         Path,
         typer.Option(
             metavar="MOTION.csv",
-            help="CSV of the motion; a JSON with what it promises, a page and a preview go beside it.",
+            help="CSV of the motion. A JSON file with the predicted intervals, a page and a preview go beside it.",
         ),
     ],
     stiffness: Annotated[
         float | None,
         typer.Option(
             metavar="K",
-            help="Of each foot in pitch and roll, as far as you know it, in N·m/rad. It or --after is needed.",
+            help="Stiffness of each foot in pitch and roll, as far as you know it, in N·m/rad. Give this or --after.",
         ),
     ] = None,
     after: Annotated[
         Path | None,
-        typer.Option(help="An earlier result: its stiffness, and what is weak in it.", metavar="RESULT.json"),
+        typer.Option(
+            help="An earlier result: its stiffness is used, and the motion is made for what is weak in it.",
+            metavar="RESULT.json",
+        ),
     ] = None,
     damping: Annotated[
         float | None,
         typer.Option(
-            metavar="C", help="In N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out."
+            metavar="C",
+            help="Damping in N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out.",
         ),
     ] = None,
-    duration: Annotated[float, typer.Option(metavar="S", help="Of the motion, in s.")] = 60.0,
-    rate: Annotated[float, typer.Option(metavar="HZ", help="Rows a second, in Hz.")] = 200.0,
+    duration: Annotated[float, typer.Option(metavar="S", help="Duration of the motion, in s.")] = 60.0,
+    rate: Annotated[float, typer.Option(metavar="HZ", help="Rows per second in the file, in Hz.")] = 200.0,
     criterion: Annotated[
         str,
         typer.Option(
@@ -60,7 +64,7 @@ def run(
             "together, D (their volume) or A (their mean square).",
         ),
     ] = "widest",
-    seed: Annotated[int, typer.Option(help="Draws frequencies and the search.", min=0)] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the random frequencies and of the search.", min=0)] = 0,
     to: Annotated[
         list[str] | None,
         typer.Option(

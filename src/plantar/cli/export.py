@@ -15,8 +15,8 @@ from plantar.exporters.job import LEAST_LOAD
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
 MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat, URDF or USD; the result's own URDF if left out."
 HYSTERESIS_HELP = (
-    "mujoco-contact: leave what points cannot be, slip above all, to plantar.FootHysteresis in your simulation's "
-    "loop."
+    "mujoco-contact: slip and tipping, which contact points cannot model, are left to plantar.FootHysteresis, to be "
+    "called in your simulation's loop."
 )
 OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 

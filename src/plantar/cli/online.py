@@ -46,10 +46,12 @@ REFRESH = 0.1  # s between two tables
 KINDS: Sequence[Format] = ("png", "svg", "pdf")
 LONGEST_WAIT = 120.0  # s for a browser to open the page
 DELAY_HELP = (
-    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: the result's; "
-    "without a result 0, and the damping's interval is wide enough for what the robot file allows."
+    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: the result's. "
+    "Without a result it is 0, and the damping's interval allows for the delay that the robot file allows."
 )
-RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, places, delay and cutoff are used."
+RESULT_HELP = (
+    "A result of `identify feet`: its hysteresis, compliance, bush centres, delay and cutoff are used."
+)
 
 
 def run(
@@ -61,7 +63,10 @@ def run(
     ] = None,
     cutoff: Annotated[
         float | None,
-        typer.Option(metavar="HZ", help="Of the filters before the regressions, in Hz; the result's, or 5."),
+        typer.Option(
+            metavar="HZ",
+            help="Cut-off of the filters before the regressions, in Hz. If left out: the result's, or 5.",
+        ),
     ] = None,
     write_model: Annotated[
         Path | None,
@@ -79,7 +84,9 @@ def run(
             metavar="FILE",
         ),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page, on this machine alone.")] = 8080,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port of the --live page, which only this machine can open.")
+    ] = 8080,
     memory: options.Memory = None,
     json: options.Json = False,
     quiet: options.Quiet = False,

@@ -24,7 +24,7 @@ def run(
         str,
         typer.Option(metavar="MOTION,...", help="Motions to compare with the best set, separated by commas."),
     ] = "",
-    largest: Annotated[int, typer.Option(help="Most logs in a set.", min=1, max=20)] = 6,
+    largest: Annotated[int, typer.Option(help="Largest number of logs in a set.", min=1, max=20)] = 6,
     memory: options.Memory = None,
     json: options.Json = False,
     quiet: options.Quiet = False,

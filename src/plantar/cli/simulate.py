@@ -43,7 +43,7 @@ def run(
         typer.Option(metavar="DIR", help="Folder for the robot file, the logs and the truth beside them."),
     ],
     preset: Annotated[str | None, typer.Option(metavar="PRESET", help=PRESET_HELP)] = None,
-    seed: Annotated[int, typer.Option(help="Draws the sensors' noise, biases and zeros.", min=0)] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the sensors' noise, biases and zeros.", min=0)] = 0,
     robot: Annotated[
         Path | None,
         typer.Option(metavar="ROBOT.yaml", help="Robot file of a biped; the HRP-2-like one if left out."),
@@ -52,7 +52,7 @@ def run(
     sway: Annotated[
         float | None,
         typer.Option(
-            help="How far tilts move the chest and the operator leads it, in m; as in the paper if left out.",
+            help="How far the chest moves in tilts and where the operator leads it, in m; as in the paper if left out.",
             metavar="M",
         ),
     ] = None,
@@ -65,15 +65,20 @@ def run(
     ] = None,
     apart: Annotated[
         float | None,
-        typer.Option(metavar="M", help="Between the soles, in m; as the robot's posture has it if left out."),
+        typer.Option(
+            metavar="M",
+            help="Distance between the soles, in m; that of the robot's usual posture if left out.",
+        ),
     ] = None,
     period: Annotated[
         float | None,
-        typer.Option(metavar="S", help="Of one step of a walk, 0.6 to 6 s; as its name says if left out."),
+        typer.Option(
+            metavar="S", help="Duration of a step of a walk, 0.6 to 6 s; as the walk's name says if left out."
+        ),
     ] = None,
     robots: Annotated[int, typer.Option(metavar="N", help="How many robots 'fleet' has.", min=1)] = 20,
     days: Annotated[
-        int, typer.Option(metavar="N", help="How many days 'fleet' has: a log a robot and day.", min=1)
+        int, typer.Option(metavar="N", help="How many days 'fleet' has: one log per robot and day.", min=1)
     ] = 60,
     quiet: options.Quiet = False,
 ) -> None:

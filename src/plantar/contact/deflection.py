@@ -86,28 +86,22 @@ def bush_states(
     orientation: Array,
     angular_velocity: Array,
     wrenches: Mapping[str, Array],
-    threads: int = 0,
 ) -> dict[str, BushState]:
     """The state of every foot of a robot through a motion of N samples.
 
     positions, velocities: (N, n_joints) in the robot's joint order [rad or m, and per second]; only joints
     between the IMU and a foot are read; orientation: w x y z, IMU to world, (N, 4), of any length > 0;
-    angular_velocity: of the IMU in its own frame, (N, 3) [rad/s]; wrenches: as recorded, (N, 6), by foot;
-    threads: 0 for as many as are worth starting. NaN in, NaN out.
+    angular_velocity: of the IMU in its own frame, (N, 3) [rad/s]; wrenches: as recorded, (N, 6), by foot.
+    NaN in, NaN out.
 
     Raises RobotError when the robot file has no IMU, DataError when an array has the wrong shape.
     """
-    motions = foot_motions(robot, positions, velocities, orientation, angular_velocity, threads)
-    return loaded(robot, motions, wrenches, threads)
+    motions = foot_motions(robot, positions, velocities, orientation, angular_velocity)
+    return loaded(robot, motions, wrenches)
 
 
 def foot_motions(
-    robot: RobotModel,
-    positions: Array,
-    velocities: Array,
-    orientation: Array,
-    angular_velocity: Array,
-    threads: int = 0,
+    robot: RobotModel, positions: Array, velocities: Array, orientation: Array, angular_velocity: Array
 ) -> dict[str, FootMotion]:
     """What the kinematics say of every foot; arguments and errors as of `bush_states`."""
     samples, joints = len(orientation), len(robot.joint_names)
@@ -116,11 +110,11 @@ def foot_motions(
     _expect("orientation", orientation, (samples, 4))
     _expect("angular velocity", angular_velocity, (samples, 3))
     arrays = positions, velocities, orientation, angular_velocity
-    return {name: foot_motion(path_to(robot, name)[0], *arrays, threads) for name in robot.feet}
+    return {name: foot_motion(path_to(robot, name)[0], *arrays) for name in robot.feet}
 
 
 def loaded(
-    robot: RobotModel, motions: Mapping[str, FootMotion], wrenches: Mapping[str, Array], threads: int = 0
+    robot: RobotModel, motions: Mapping[str, FootMotion], wrenches: Mapping[str, Array]
 ) -> dict[str, BushState]:
     """What the force sensors say added to the motions; `wrenches` and errors as of `bush_states`."""
     least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
@@ -131,7 +125,7 @@ def loaded(
         sensor, sole = (
             packed_frame(to_bush * robot.frame(part.placement)[1]) for part in (foot.wrench, foot.sole)
         )
-        rows = _core.sole_load(sensor, foot.wrench.sign, wrenches[name], motion.up, sole, least, threads)
+        rows = _core.sole_load(sensor, foot.wrench.sign, wrenches[name], motion.up, sole, least)
         states[name] = BushState(
             deflection=motion.deflection,
             rate=motion.rate,
@@ -191,12 +185,7 @@ def foot_path(
 
 
 def foot_motion(
-    path: FootPath,
-    positions: Array,
-    velocities: Array,
-    orientation: Array,
-    angular_velocity: Array,
-    threads: int = 0,
+    path: FootPath, positions: Array, velocities: Array, orientation: Array, angular_velocity: Array
 ) -> FootMotion:
     """Angles, rates and sole position of one foot, for N samples at once; arguments as in `bush_states`."""
     rows = _core.foot_chain(
@@ -209,7 +198,6 @@ def foot_motion(
         [velocities[:, joint] for joint in path.joints],
         orientation,
         angular_velocity,
-        threads,
     )
     return FootMotion(
         rows[0:3].T,

@@ -13,8 +13,9 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.motions.profile import window
 
-# The centre of mass forward, left and up [m], the root link about x and y [rad], the arms [share of a swing], and each
-# ankle about its bush's x and y [rad]: soft soles stay flat, so what an ankle turns is what its bush bends.
+# The centre of mass forward, across the line through the feet, left, along it, and up [m], the root link about x and y
+# [rad], the arms [share of a swing], and each ankle about its bush's x and y [rad]: soft soles stay flat, so what an
+# ankle turns is what its bush bends.
 CHANNELS: Final = (
     "centre.x", "centre.y", "centre.z", "trunk.roll", "trunk.pitch", "arms",
     "left.roll", "left.pitch", "right.roll", "right.pitch",

@@ -41,10 +41,11 @@ class Legs:
     arms: Array
 
     @classmethod
-    def of(cls, robot: RobotModel, posture: Mapping[str, float] | None) -> Legs:
-        """A robot that stands in `posture`, or with bent knees and all else at neutral where None."""
+    def of(cls, robot: RobotModel, posture: Mapping[str, float] | None, ahead: float = 0.0) -> Legs:
+        """A robot that stands in `posture`, or with bent knees and all else at neutral where None, the right foot
+        `ahead` [m] of the left one."""
         body = Body(robot)
-        start = stand(body, posture, {})
+        start = stand(body, posture, {"right": (ahead, 0.0)})
         upper = start.configuration if posture is not None else body.neutral()
         return cls(body, start, upper, arm_swing(body, upper))
 
@@ -99,6 +100,21 @@ class Legs:
         message = "the legs cannot carry the body over its feet with bent knees"
         raise MotionError(message, path=self.body.robot.name, valid="legs of six joints each")
 
+    @property
+    def ahead(self) -> float:
+        """How far the right sole stands ahead of the left one [m]."""
+        left, right = (self.start.soles[foot].translation for foot in ("left", "right"))
+        return float(right[0] - left[0])
+
+    @cached_property
+    def directions(self) -> Array:
+        """Columns (3, 3) in which the channels move the centre of mass: across the line through the bushes, about which
+        soft feet let the body lean, along it, and up."""
+        left, right = (self.rest[2][foot].translation for foot in ("left", "right"))
+        along = (left - right) * [1.0, 1.0, 0.0] / np.linalg.norm((left - right)[:2])
+        up = np.array([0.0, 0.0, 1.0])
+        return np.column_stack([np.cross(along, up), along, up])
+
     @cached_property
     def _bounded(self) -> list[tuple[int, float, float]]:
         """Of the legs' joints that have limits, the place in a configuration and both limits."""
@@ -131,7 +147,7 @@ class Legs:
                 continue
             swung = pin.integrate(self.model, rest, moved["arms"] * self.arms)
             q = self._with_legs_of(q, swung)
-            target = centre + [moved["centre.x"], moved["centre.y"], moved["centre.z"]]
+            target = centre + self.directions @ [moved["centre.x"], moved["centre.y"], moved["centre.z"]]
             trunk = pin.rpy.rpyToMatrix(moved["trunk.roll"], moved["trunk.pitch"], 0.0) @ upright
             tilted = {
                 foot: pose * pin.SE3(_turned(moved[f"{foot}.pitch"], moved[f"{foot}.roll"]), np.zeros(3))

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.elastoplastic import jenkins_states
+from plantar.models.elastoplastic import Elastoplastic
 from plantar.models.hysteresis import Path
 
 # Until it slips the element is a spring of this share of the bush's own, in pitch and roll: the hysteresis of HRP-2's
@@ -26,5 +26,5 @@ def remembered(deflections: Array, slip_angles: Sequence[float]) -> Array:
     angles, (count, samples) = np.array(slip_angles), deflections.shape
     ends = samples * np.arange(count + 1)
     path = Path(np.ascontiguousarray(deflections).ravel(), np.column_stack([ends[:-1], ends[1:]]))
-    states = jenkins_states(path, angles, np.zeros((count, angles.size)))
+    states = Elastoplastic().states(path, angles[:, None], np.zeros((count, angles.size)))
     return np.moveaxis(states.reshape(count, samples, -1) * angles, 1, -1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
@@ -34,31 +34,32 @@ LOADED: Final = 1.0
 
 
 def best_motion(
-    reach_on: Callable[[Lines], Reach],
+    stances: Sequence[Callable[[Lines], Reach]],
     duration: float,
     criterion: Criterion,
     seed: int,
     known: Array | float = 0.0,
     progress: Callable[[str], None] = lambda _: None,
-) -> tuple[Lines, Array]:
-    """Lines of a motion of `duration` [s], each beginning's own, and coefficients (size,) of the best one within the
-    limits on its lines; `known` as in `half_widths`.
+) -> tuple[int, Lines, Array]:
+    """Place of the stance, lines of a motion of `duration` [s], each beginning's own, and coefficients (size,) of the
+    best one within the limits of its stance on its lines; beginnings take the stances in turn. `known` as in
+    `half_widths`.
 
     Limits are linear in the coefficients, but for rubber that slips, and there are many: a small sole bends far only
     where load, ankles and trunk go together. So each step goes as far down the slope of what is minimised as all
     limits and a box around the motion allow, which is a linear program.
     """
 
-    def end(place: int) -> tuple[float, Lines, Array]:
+    def end(place: int) -> tuple[float, int, Lines, Array]:
         random = np.random.default_rng([seed, place])
-        lines = Lines.drawn(duration, random)
-        reach = reach_on(lines)
+        lines, stance = Lines.drawn(duration, random), place % len(stances)
+        reach = stances[stance](lines)
         least, found = _end(reach, criterion, _start(random) / _alone(reach), known)
-        return least, lines, found
+        return least, stance, lines, found
 
     progress(f"search from {STARTS} beginnings")
-    _, lines, coefficients = min(over_cores(end, range(STARTS)), key=lambda found: found[0])
-    return lines, coefficients
+    _, stance, lines, coefficients = min(over_cores(end, range(STARTS)), key=lambda found: found[0])
+    return stance, lines, coefficients
 
 
 def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:

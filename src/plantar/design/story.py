@@ -44,6 +44,10 @@ BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long
 ROUNDS: Final = 12
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
+# Times the distance between the feet by which the right one may stand ahead. Side by side, legs alone roll the ankles:
+# all feet bend alike, so the stiffest limit all. A foot ahead lets the body's lean roll them, too, most on soft feet;
+# much farther ahead it costs pitch more than it brings roll.
+AHEAD: Final = 0.25
 
 
 @dataclass(frozen=True)
@@ -135,9 +139,8 @@ def design_motion(
     if settings.stiffness is None and known is None:
         raise SettingsError("the stiffness is not told (valid: a stiffness, or an earlier result)")
     progress("stand")
-    legs = Legs.of(robot, postures_of(robot).standing)
-    legs = replace(legs, arms=free_swing(robot, legs.rest[0], legs.arms) * legs.arms)
-    linear = LinearRobot.of(legs)
+    stances = _stances(robot)
+    legs, linear = stances[0]
     stiffness, low, high = _range(settings, known)
     linear.pendulum.check_carried(stiffness, robot.name)
     least = CARRIED * linear.pendulum.least_stiffness
@@ -148,20 +151,40 @@ def design_motion(
     before = 0.0 if known is None else known.precision(tuple(legs.bushes))
     left = np.full((len(bushes), len(KINDS)), LEFT)
 
-    def reach_on(lines: Lines) -> Reach:
-        return Reach(legs, linear, lines, told, bushes)
+    def reach_of(legs: Legs, linear: LinearRobot) -> Callable[[Lines], Reach]:
+        return lambda lines: Reach(legs, linear, lines, told, bushes).held(left)
 
-    lines, found = best_motion(
-        lambda lines: reach_on(lines).held(left), settings.duration, settings.criterion, settings.seed, before, progress
+    place, lines, found = best_motion(
+        [reach_of(*each) for each in stances], settings.duration, settings.criterion, settings.seed, before, progress
     )  # fmt: skip
+    legs, linear = stances[place]
     motion = _Attempt(
-        reach_on(lines),
+        Reach(legs, linear, lines, told, bushes),
         lambda limits, start: better_motion(limits, settings.criterion, start, before),
         found,
         _rehearsed_at(*factors),
     )
     coefficients, rehearsals, pairs = _rehearsed(motion, legs, told, progress)
     return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
+
+
+def _stances(robot: RobotModel) -> list[tuple[Legs, LinearRobot]]:
+    """The robot with its feet side by side, and with the right one ahead where its legs reach so far.
+
+    Raises MotionError where it cannot stand side by side.
+    """
+
+    def standing(ahead: float) -> tuple[Legs, LinearRobot]:
+        legs = Legs.of(robot, postures_of(robot).standing, ahead)
+        legs = replace(legs, arms=free_swing(robot, legs.rest[0], legs.arms) * legs.arms)
+        return legs, LinearRobot.of(legs)
+
+    beside = standing(0.0)
+    left, right = beside[1].pendulum.places.values()
+    try:
+        return [beside, standing(AHEAD * float(np.linalg.norm(left - right)))]
+    except MotionError:
+        return [beside]
 
 
 def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float, float]:

@@ -6,16 +6,11 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.dynamics.base_parameters import BaseParameters, base_parameters, parameter_name
-from plantar.dynamics.equation import Contact, Equation, equation_of, model_parameters
-from plantar.dynamics.fit import (
-    BaseParameterFit,
-    fit_base_parameters,
-    fit_base_parameters_chunked,
-    solve_triangle,
-)
+from plantar.dynamics.base_parameters import BaseParameters, base_parameters
+from plantar.dynamics.equation import Contact, Equation, model_parameters
+from plantar.dynamics.fit import BaseParameterFit, fit_base_parameters, fit_base_parameters_chunked
 from plantar.dynamics.motion import Motion, pinocchio_motion
-from plantar.dynamics.stream import EquationStream, RowFactor, stacked
+from plantar.dynamics.stream import EquationStream, RowFactor
 
 __all__ = [
     "BaseParameterFit",
@@ -26,15 +21,11 @@ __all__ = [
     "Motion",
     "RowFactor",
     "base_parameters",
-    "equation_of",
     "fit_base_parameters",
     "fit_base_parameters_chunked",
     "model_parameters",
-    "parameter_name",
     "pinocchio_motion",
     "regressor",
-    "solve_triangle",
-    "stacked",
 ]
 
 

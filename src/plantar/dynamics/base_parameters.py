@@ -87,7 +87,24 @@ def parameter_name(links: tuple[str, ...], index: int) -> str:
 
 
 def base_parameters(equation: Equation) -> BaseParameters:
-    """The minimal parameters of a robot, from its structure alone; the same on every machine."""
+    """The minimal parameters of a robot, from its structure alone; the same on every machine.
+
+    Args:
+        equation: of the robot, such as `dynamics.Equation(model)`.
+
+    Returns:
+        Which of the 10 n_links inertial parameters are kept, and what is added to each.
+
+    Raises:
+        RobotError: `Equation` does, for a joint that is not revolute, continuous or prismatic.
+
+    Example:
+        >>> import pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model = pin.buildSampleModelManipulator()
+        >>> len(dynamics.base_parameters(dynamics.Equation(model))), 10 * (model.njoints - 1)
+        (38, 60)
+    """
     size = PER_LINK * len(equation.links)
     first_joint = 1 if equation.floating else 0
     kept = list(range(PER_LINK * first_joint))

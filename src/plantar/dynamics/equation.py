@@ -92,7 +92,6 @@ class Equation:
         parameters: Array | None,
         contacts: Sequence[Contact] = (),
         wrenches: Sequence[Array] = (),
-        threads: int = 0,
     ) -> Array:
         """Y phi_I less what the contacts carry, (n_rows, N) [N, N·m].
 
@@ -110,18 +109,15 @@ class Equation:
             m.positions,
             m.velocities,
             m.accelerations,
-            threads,
         )
 
-    def base_wrenches(self, motion: Motion, parameters: Array, threads: int = 0) -> Array:
+    def base_wrenches(self, motion: Motion, parameters: Array) -> Array:
         """The first six rows of Y phi_I of a floating base for several sets of parameters at once, (sets, N, 6).
 
         parameters: (sets, 10 n_links).
         """
         m, given = motion, np.ascontiguousarray(parameters, dtype=np.float64)
-        return _core.base_wrenches(
-            self.core, given, m.base, m.positions, m.velocities, m.accelerations, threads
-        )
+        return _core.base_wrenches(self.core, given, m.base, m.positions, m.velocities, m.accelerations)
 
     def contact_transfer(self, positions: Array, contact: Contact) -> Array:
         """K_B and K_J of one contact, (N, n_rows, 6): contact wrench to base wrench and joint torques."""
@@ -163,6 +159,23 @@ def link_names(model: pin.Model) -> tuple[str, ...]:
 
 
 def model_parameters(model: pin.Model) -> Array:
-    """The inertial parameters that a model's links have, (10 n_links,), in Pinocchio's order."""
+    """The inertial parameters of a model's links.
+
+    Args:
+        model: the robot.
+
+    Returns:
+        (10 n_links,) in Pinocchio's order: m [kg], m·c [kg·m], Ixx Ixy Iyy Ixz Iyz Izz about the joint frame [kg·m²].
+
+    Raises:
+        Nothing.
+
+    Example:
+        >>> import pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model = pin.buildSampleModelManipulator()
+        >>> dynamics.model_parameters(model).shape == (10 * (model.njoints - 1),)
+        True
+    """
     parameters = [inertia.toDynamicParameters() for inertia in list(model.inertias)[1:]]
     return np.concatenate(parameters) if parameters else np.zeros(0)

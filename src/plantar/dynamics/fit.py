@@ -108,7 +108,28 @@ def fit_base_parameters(
 def fit_base_parameters_chunked(
     model: pin.Model, chunks: Iterable[Samples], rows: Rows = "base", threads: int = 0
 ) -> BaseParameterFit:
-    """As `fit_base_parameters`, from any number of batches (q, v, a, tau), in constant memory."""
+    """As `fit_base_parameters`, from any number of batches, in constant memory.
+
+    Args:
+        model: the robot, with or without a free-flyer at its root.
+        chunks: q (N, nq), v, a, tau (N, nv) of each batch, which may come from a generator.
+        rows: "base" or "all", as of `fit_base_parameters`.
+        threads: 0 for as many as are worth starting.
+
+    Returns:
+        What `fit_base_parameters` returns for all samples in one.
+
+    Raises:
+        RobotError, DataError: as `fit_base_parameters`; DataError also where there is no sample.
+
+    Example:
+        >>> import numpy as np, pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model, random = pin.buildSampleModelManipulator(), np.random.default_rng(0)
+        >>> chunks = (random.normal(size=(4, 50, model.nv)) for _ in range(3))
+        >>> dynamics.fit_base_parameters_chunked(model, chunks, rows="all").samples
+        150
+    """
     equation = Equation(model)
     if rows == "base" and not equation.floating:
         raise DataError("base rows need a free-flyer at the root (valid: rows='all' for a fixed base)")

@@ -41,9 +41,28 @@ class Motion:
 
 
 def pinocchio_motion(model: pin.Model, tree: KinematicTree, q: Array, v: Array, a: Array) -> Motion:
-    """Pinocchio's q (N, nq), v and a (N, nv) as a `Motion`, under the model's own gravity.
+    """Samples in Pinocchio's conventions as a `Motion`, under the model's own gravity.
 
-    Raises DataError when a shape is wrong or a value is not finite.
+    Args:
+        model: the robot.
+        tree: of its joints, such as `dynamics.Equation(model).tree`.
+        q: (N, nq) positions [m, rad].
+        v: (N, nv) velocities.
+        a: (N, nv) accelerations.
+
+    Returns:
+        The motion of root and joints that `Equation` takes.
+
+    Raises:
+        DataError: a shape is wrong, or a value is not finite.
+
+    Example:
+        >>> import numpy as np, pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model = pin.buildSampleModelManipulator()
+        >>> zero = np.zeros((5, model.nv))
+        >>> len(dynamics.pinocchio_motion(model, dynamics.Equation(model).tree, zero, zero, zero))
+        5
     """
     arrays = {"q": q, "v": v, "a": a}
     for name, width in (("q", model.nq), ("v", model.nv), ("a", model.nv)):

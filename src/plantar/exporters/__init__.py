@@ -70,14 +70,14 @@ def export(
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF, USD; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out, for USD a layer to reference.
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
-        swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
-            slip becomes their spring and damper. Where left out, it is the middle of the identified motions'.
-        hysteresis: for mujoco-contact: leave to `plantar.FootHysteresis` in the simulation's loop what points cannot
-            be: rubber that slips, feet that tip. Joints of mjcf hold it anyway.
-        pivot: for mujoco-contact: what the foot turns about, "ground" or "bush": the bush's centre, as the robot's feet
-            do. The robot then stands lower by the bush's height over the sole.
-        least_load: for mujoco-contact: the least load that a foot does not give way under along z, as a share of the
-            robot's weight, 0.05 to 0.5. The less, the smaller the angle up to which K holds.
+        swing: where the rubber has hysteresis and the target has none, the spring and damper of motions with this
+            amplitude are written [rad]; None takes the median amplitude of the identified motions.
+        hysteresis: for mujoco-contact: leave slip and tipping, which contact points cannot model, to
+            `plantar.FootHysteresis`, to be called in the simulation's loop. The joints of mjcf have the slip anyway.
+        pivot: for mujoco-contact: what feet turn about: "ground", or "bush", the bush centre, as the robot's feet do.
+            With "bush" the robot stands lower by the height of the bush over the sole.
+        least_load: for mujoco-contact: share of the robot's weight below which a foot is soft along z, 0.05 to 0.5. A
+            smaller share suits feet that are lightly loaded, but K then holds up to a smaller angle only.
 
     Returns:
         What the target could not hold, as notes.

@@ -19,8 +19,8 @@ LEAST_LOADS: Final = (0.05, 0.5)  # of the weight: a foot that stands with the o
 
 @dataclass(frozen=True)
 class Stance:
-    """How a foot on points stands: what it turns about, one of `PIVOTS`, and the least load, as a share of the robot's
-    weight, that it does not give way under along z."""
+    """How a foot on points stands: what it turns about, one of `PIVOTS`, and the share of the robot's weight below
+    which it is soft along z."""
 
     pivot: str = "ground"
     least_load: float = LEAST_LOAD

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
+from plantar.errors import clock
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
@@ -41,7 +42,7 @@ def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     rest = _at_rest(log)
     if rest.any():
         longest = longest_run(rest)
-        when = f"t = {log.time[longest.start]:g} to {log.time[longest.stop - 1]:g} s"
+        when = f"t = {clock(log.time[longest.start])} to {clock(log.time[longest.stop - 1])} s"
         text = f"{when}: nothing changes, as of a simulated robot at rest; {100 * np.mean(rest):.0f} % of the log"
         yield Finding("at_rest", f"{text}, left out", severity="info")
     for sensor in (
@@ -98,7 +99,9 @@ def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
     if turned < max(TURNED, STEPS * coarse):
         return
     doubt = max(_elsewhere(parted, seconds, run), _noise_path(turns[run]))
-    where = f"column 'joint.{joint}.position', t = {log.time[run.start]:g} to {log.time[run.stop]:g} s"
+    where = (
+        f"column 'joint.{joint}.position', t = {clock(log.time[run.start])} to {clock(log.time[run.stop])} s"
+    )
     text = f"{where}, value {position[run.start]:.6g}: stands still while its velocity turns {turned:.2g} rad"
     if turned > BEYOND_DOUBT * doubt:
         yield Finding("dead_channel", f"{text}; the encoder is dead (valid: leave such cells empty)", True)
@@ -180,7 +183,7 @@ def _stuck(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
     for (start, last), found in together.items():
         stopped = [column for column, _ in found]
         several = len(stopped) > 1
-        when = f"t = {log.time[start]:g} to {log.time[last]:g} s"
+        when = f"t = {clock(log.time[start])} to {clock(log.time[last])} s"
         value = "" if several else f", value {log.column(stopped[0])[start]:.6g}"
         still = "stand still while they change" if several else "stands still while it changes"
         share = f"{100 * max(share for _, share in found):.0f} % of the log, left out"

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.conventions import Mask
-from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
+from plantar.errors import clock
+from plantar.logs.motion_log import MotionLog, device_of, imu_columns, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 from plantar.signals.dropouts import dropouts_of
@@ -28,13 +29,11 @@ def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if not needed.isdisjoint(columns):
             first = int(np.flatnonzero(mask)[0])
             single = len(columns) == 1
-            where = (
-                f"column '{columns[0]}'" if single else f"columns '{'.'.join(columns[0].split('.')[:2])}.*'"
-            )
+            where = f"column '{columns[0]}'" if single else f"columns '{device_of(columns[0])}.*'"
             text = (
-                f"{where}, t = {log.time[first]:g} s, value 0: {'reads' if single else 'read'} exactly 0 between jumps "
-                f"in {len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the sensor "
-                "lose its connection? (valid: leave such cells empty)"
+                f"{where}, t = {clock(log.time[first])} s, value 0: {'reads' if single else 'read'} exactly 0 between "
+                f"jumps in {len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the "
+                "sensor lose its connection? (valid: leave such cells empty)"
             )
             yield Finding("dropout", text)
     gaps = [(start, end, "rows") for start, end in sampling(log).gaps]
@@ -48,7 +47,7 @@ def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if lost > LEAST_LOST * lasts:
         start, end, _ = max(gaps, key=lambda gap: gap[1] - gap[0])
         what = " and ".join(sorted({what for _, _, what in gaps}))
-        text = f"{what}: {len(gaps)} gap{'s' * (len(gaps) > 1)}, the longest from t = {start:g} to {end:g} s"
+        text = f"{what}: {len(gaps)} gap{'s' * (len(gaps) > 1)}, the longest from t = {clock(start)} to {clock(end)} s"
         told = f"{text}, {100 * lost / lasts:.0f} % of the log: left out, and the delay is less well known"
         yield Finding("gaps", f"{told} (valid: every sensor at every time)")
 

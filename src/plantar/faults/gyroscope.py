@@ -16,6 +16,7 @@ from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
 from plantar.signals.medians import median
 from plantar.signals.orientation import rates_from
+from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import complete, spread_out
 
 WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
@@ -59,7 +60,9 @@ class Turns:
         stride = max(1, round(WINDOW / log.period))
         if len(log) < 2 * stride:
             return None
-        steps = (rates[1:] + rates[:-1]) / 2 * np.diff(log.time)[:, None]
+        lasts = np.diff(log.time)[:, None]
+        # Across a gap nobody knows how it has turned, least of all where the clock was set.
+        steps = np.where(lasts > GAP_PERIODS * log.period, np.nan, (rates[1:] + rates[:-1]) / 2 * lasts)
         total = np.vstack([np.zeros(3), np.cumsum(np.nan_to_num(steps), axis=0)])
         missing = np.concatenate([[0], np.cumsum(np.isnan(steps).any(axis=1))])
         starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.conventions import GRAVITY
-from plantar.errors import DataError
+from plantar.errors import DataError, clock
 from plantar.faults.air_readings import check_air_readings
 from plantar.faults.bush_frames import check_bush_axes, check_bush_link
 from plantar.faults.channels import check_channels, named
@@ -106,7 +106,7 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         fits = least / DEGREES > lower - slack and most / DEGREES < upper + slack
         worst = most if most - upper > lower - least else least
         at = float(log.time[int(np.nanargmax(values if worst == most else -values))])
-        where = f"column 'joint.{name}.position', t = {at:g} s, value {worst:.6g}"
+        where = f"column 'joint.{name}.position', t = {clock(at)} s, value {worst:.6g}"
         valid = f"valid: {lower:.4g} to {upper:.4g} rad"
         if outside and fits and max(abs(least), abs(most)) > 2 * np.pi:
             yield Finding("degrees", f"{where}: looks like degrees ({valid})", True)

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from os import cpu_count
+from typing import Any
 
 import numpy as np
 
@@ -62,8 +63,8 @@ def looked_at(
 ) -> list[FirstLook]:
     """Every log `checked` and looked at, in order: small files on all cores, others read when their turns come.
 
-    timed: whether Newton's law is to tell how late sensors are; meanwhile: as in `over_cores`. Raises the error of the
-    first log that has one.
+    timed: whether Newton's law is to tell how late sensors are; meanwhile: called once, while the first is read. Raises
+    the error of the first log that has one.
     """
     if isinstance(logs, WaitingLogs) and logs.bounded:
 
@@ -71,7 +72,7 @@ def looked_at(
             return look_at(robot, timed, checked(robot, opened()))
 
         return over_cores(read, logs.openers, meanwhile=meanwhile)
-    even = checked_in_turn(robot, logs)
+    even = checked_in_turn(robot, logs, meanwhile)
     with over_logs(even) as each:
         return list(each(partial(look_at, robot, timed), even))
 
@@ -80,13 +81,14 @@ def look_at(robot: RobotModel, timed: bool, log: MotionLog) -> FirstLook:
     """What one `checked` log tells; `timed` as in `looked_at`."""
     gyroscope = None if robot.imu is None else log_gyroscope_delay(log, robot.imu.name)
     late = gyroscope is not None and gyroscope.shown
-    return FirstLook(
-        log,
-        gyroscope,
-        accelerometer_delay(robot, log),
-        _tilt(robot, log),
-        _as_recorded(robot, log) if timed and not late else None,
-    )
+    asked: list[Callable[[], Any]] = [
+        lambda: _as_recorded(robot, log) if timed and not late else None,
+        lambda: (accelerometer_delay(robot, log), _tilt(robot, log)),
+    ]
+    with ThreadPoolExecutor(len(asked)) as pool:  # of a long log each takes a while
+        each = pool.map if len(log) > LONG else map
+        residuals, (accelerometer, tilt) = each(lambda ask: ask(), asked)
+    return FirstLook(log, gyroscope, accelerometer, tilt, residuals)
 
 
 def look_again(robot: RobotModel, timed: bool, look: FirstLook, log: MotionLog) -> FirstLook:
@@ -104,11 +106,16 @@ def _as_recorded(robot: RobotModel, log: MotionLog) -> list[NewtonEulerResidual]
     return None if on_force_cells(robot, [log]) else residuals_at(robot, np.zeros(len(robot.feet) + 1), log)
 
 
-def checked_in_turn(robot: RobotModel, logs: Iterable[MotionLog]) -> list[MotionLog]:
-    """Every log `checked`, in order; while one is, the next is read. Raises the error of the first that has one."""
+def checked_in_turn(
+    robot: RobotModel, logs: Iterable[MotionLog], meanwhile: Callable[[], object] | None = None
+) -> list[MotionLog]:
+    """Every log `checked`, in order; while one is, the next is read, and while the first is, what is to be done
+    `meanwhile`. Raises the error of the first that has one."""
     even: list[MotionLog] = []
     pending: Future[MotionLog] | None = None
     with ThreadPoolExecutor(1) as pool:
+        if meanwhile is not None:
+            pool.submit(meanwhile)
         try:
             for log in logs:
                 if pending is not None:

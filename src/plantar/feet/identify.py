@@ -82,9 +82,14 @@ def identify_feet(
 
 
 def fit_prepared(
-    robot: RobotModel, ready: PreparedLogs, progress: Callable[[str], None] = lambda _: None
+    robot: RobotModel,
+    ready: PreparedLogs,
+    progress: Callable[[str], None] = lambda _: None,
+    *,
+    residuals: bool = True,
 ) -> FeetResult:
-    """`identify_feet` on logs that are ready. Raises DataError where no foot carries load in any of them."""
+    """`identify_feet` on logs that are ready, without the table of `residuals` where nobody reads it. Raises DataError
+    where no foot carries load in any log."""
     logs = [recording.log for recording in ready.fitted]
     if not any(recording.contacts[foot].standing.any() for recording in ready.fitted for foot in robot.feet):
         names = ", ".join(log.name for log in logs)
@@ -99,7 +104,7 @@ def fit_prepared(
     between = between_all(list(fitted.values()))
     found = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
-    return feet_result(robot, ready, found, between)
+    return feet_result(robot, ready, found, between, residuals)
 
 
 def _with_encoders_right(

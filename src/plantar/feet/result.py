@@ -31,10 +31,10 @@ from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
 def feet_result(
-    robot: RobotModel, ready: PreparedLogs, found: Sequence[FootFit], between: Apart
+    robot: RobotModel, ready: PreparedLogs, found: Sequence[FootFit], between: Apart, residuals: bool
 ) -> FeetResult:
     """Everything that is known of a robot's feet from logs that are ready, each of which was fitted and assessed as
-    one of `found`; `between`: by how much its recordings differ."""
+    one of `found`; `between`: by how much its recordings differ; `residuals`: whether they are asked for."""
     fits = [fit for each in found for fit in each.fits]
     limits = [row for each in found for row in each.diagnosis]
     feasible = remedies(ready.settings, ready.sensor_delay, robot, ready.fitted)
@@ -76,7 +76,7 @@ def feet_result(
         stances=tuple(row for each in found for row in each.stances),
         walks=tuple(row for each in found for row in each.walks),
         swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
-        residuals=residual_table(ready.recordings, predictions),
+        residuals=residual_table(ready.recordings, predictions) if residuals else None,
     )
 
 

@@ -95,7 +95,7 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
                 lambda _: None,
             )
             feet = tuple(_foot(ready.fitted[0], foot) for foot in robot.feet)
-            result = fit_prepared(robot, ready)
+            result = fit_prepared(robot, ready, residuals=False)
             parameters, notes, assumptions = result.parameters, result.notes, result.assumptions
     except PlantarError as error:
         findings.append(Finding("not_usable", str(error), True))

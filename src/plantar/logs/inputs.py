@@ -209,7 +209,7 @@ def _largest(path: Path) -> float:
 
 def _log_of(log: LogInput, robot: RobotModel, longest: float) -> MotionLog:
     if isinstance(log, MotionLog):
-        return log
+        return log.without_empty_joints()
     if isinstance(log, str | os.PathLike):
         return open_log(log, robot, longest=longest)
     raise _no_log(log)

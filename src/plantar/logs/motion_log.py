@@ -40,6 +40,12 @@ def wrench_columns(sensor: str) -> tuple[str, ...]:
     return tuple(f"wrench.{sensor}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
 
 
+def device_of(column: str) -> str:
+    """The IMU or force sensor that a column is of, with its kind: `wrench.left` of `wrench.left.force.x`; names may
+    hold dots."""
+    return column.rsplit(".", 2)[0]
+
+
 HARMLESS = 3  # names of joints that no foot needs: more of them only fill the screen
 
 
@@ -194,6 +200,19 @@ class MotionLog:
             )
             if names
         )  # fmt: skip
+
+    def without_empty_joints(self) -> MotionLog:
+        """The same without positions of joints that never hold a value: these were not recorded, and would empty every
+        row of what follows from all joints."""
+        positions = [
+            name for name in self.columns if name.startswith("joint.") and name.endswith(".position")
+        ]
+        empty = [name for name in positions if np.isnan(self.columns[name]).all()]
+        if not empty:
+            return self
+        text = f"{self.name}: never hold a value, taken as not recorded: {listing(empty, HARMLESS)}"
+        columns = {name: values for name, values in self.columns.items() if name not in set(empty)}
+        return replace(self, columns=columns, notes=(*self.notes, Note("joint_empty", "info", text)))
 
     def select(self, rows: slice | Mask) -> MotionLog:
         """The same recording with only some of its rows."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, device_of
 from plantar.notes import Note
 
 LONGEST = 600.0  # s of one recording that are worked on: of a longer one those stretches that move most
@@ -92,7 +92,7 @@ def stretches_of(
     bending = [
         name for name in names if name.startswith("wrench.") and name.endswith((".torque.x", ".torque.y"))
     ]
-    torques = [name for name in bending if name.split(".")[1] in sensors] or bending
+    torques = [name for name in bending if device_of(name).removeprefix("wrench.") in sensors] or bending
     told = np.array([_told(read(name), width, len(starts), max(1, round(CELL / period))) for name in torques])
     # The best of each column, then the second of each, and so on, each once.
     in_turn = np.argsort(-told.reshape(-1, len(starts)), axis=1, kind="stable").T.ravel()

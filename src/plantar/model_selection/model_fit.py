@@ -38,6 +38,7 @@ from plantar.models import BESIDE, BushModel
 
 AT_LIMIT = 0.02  # of a nonlinear parameter: this near to the end of its range it counts as at the end
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
+SLIP_ANGLE = "slip_angle"
 
 
 @dataclass(frozen=True)
@@ -101,12 +102,26 @@ class ModelFit:
             if (term, "low") in self.model.blind_ends and value < (1 + AT_LIMIT) * low:
                 found.append(f"{term} lies at or below {low:.3g}, the smallest that these motions can show")
         own = range(len(BESIDE), len(self.model.terms))
-        if own and not any(self.std[place] < HARDLY_KNOWN * abs(self.values[place]) for place in own):
+        if own and not any(self._told(place) for place in own):
             known = (
                 f"{self.model.terms[place]} {self.values[place]:.3g} ± {self.std[place]:.2g}" for place in own
             )
             found.append(f"cannot be told from zero: {', '.join(known)}")
         return tuple(found)
+
+    def _told(self, place: int) -> bool:
+        """Whether a term of the model's own is told from zero: by itself, or by the stiffness of its element.
+
+        An element that slips one way alone may slip at any torque, at an angle that goes with it; how stiff it is
+        before it slips, torque over angle, shows where it slips at all.
+        """
+        value, own = self.values[place], self.covariance[place, place]
+        if SLIP_ANGLE in self.model.shape_terms:
+            angle = self.names.index(SLIP_ANGLE)
+            ratio = value / self.shape[angle - len(self.values)]
+            mixed = self.covariance[place, angle] - ratio * self.covariance[angle, angle] / 2
+            own = min(own, own - 2 * ratio * mixed)
+        return bool(np.sqrt(max(own, 0.0)) < HARDLY_KNOWN * abs(value))
 
 
 def fit_model(

@@ -7,13 +7,13 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.elastoplastic import jenkins_states
-from plantar.models.hysteresis import Hysteretic, Path
+from plantar.models.elastoplastic import Elastoplastic
+from plantar.models.hysteresis import Path
 
 ELEMENTS = 8  # in parallel, whose slip angles spread from near zero to twice their mean
 
 
-class Iwan(Hysteretic):
+class Iwan(Elastoplastic):
     """slip_torque·z, z the mean of elements of equal stiffness whose slip angles spread evenly from 0 to 2·slip_angle.
 
     The stiffness before any slips is slip_torque / slip_angle, as for one element; it bends over in a parabola until
@@ -21,12 +21,12 @@ class Iwan(Hysteretic):
     """
 
     name: ClassVar[str] = "iwan"
-    elaborates: ClassVar[str | None] = "elastoplastic"
+    elaborates: ClassVar[str | None] = Elastoplastic.name
 
     def states(self, path: Path, shapes: Array, initial_states: Array) -> Array:
         """z (N, b): torques of the elements, each its slip angle's share."""
         spread = 2.0 * (np.arange(ELEMENTS) + 0.5) / ELEMENTS  # slip angles over their mean
         total: Array = np.zeros(())
         for ratio in spread:
-            total = total + ratio * jenkins_states(path, ratio * shapes[:, 0], initial_states)
+            total = total + ratio * super().states(path, ratio * shapes, initial_states)
         return np.asarray(total / ELEMENTS)

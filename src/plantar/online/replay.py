@@ -19,17 +19,19 @@ AS_TOLD = "as in the batch result, not learnt here"
 LEVEL = "horizontal forces under changing load have not shown it"
 WALK = "walk, or sway with the weight on one foot and the other"
 MEMORY = (Flag.PITCH_MEMORY, Flag.ROLL_MEMORY)
-REMEMBERS = "the rubber has a memory: motions of another size have another stiffness"
+REMEMBERS = "the rubber has hysteresis: motions of another size have another stiffness"
 UNTESTED = (Flag.PITCH_UNTESTED, Flag.ROLL_UNTESTED)
-SMALL = "too small motions to show whether the rubber has a memory: larger ones may have less stiffness"
-REST = "too small motions to test the slip torque that was told, on which this stiffness rests"
+SMALL = "motions too small to show hysteresis: in larger ones the stiffness may be lower"
+REST = "motions too small to test the slip torque that was given, on which this stiffness depends"
 FARTHER = "bend the foot beyond its slip angle to either side, as walking does"
 LATE = {
-    Flag.LATE_WRENCH: "torques follow deflections as if the force sensors' delay were not the one that was told",
+    Flag.LATE_WRENCH: "torques follow deflections as if the force sensors' delay were not the one that was given",
     Flag.LATE_IMU: "torques follow deflections as if the IMU were behind the encoders, or before them",
 }
-BELOW = "below zero, which no bush is: force sensors that are late look like this"
-TELL_DELAY = "tell how late they are (--wrench-delay), or let identify feet find it and give its result"
+BELOW = "negative, which no bush is: force sensors that are late look like this"
+TELL_DELAY = (
+    "say how late they are (--wrench-delay), or let `identify feet` find it and give its result (--result)"
+)
 IDENTIFY = "run `plantar identify feet` on logs of this robot, and give its result (--result)"
 
 
@@ -118,7 +120,7 @@ def _too_wide(name: str, share: float) -> str:
     """Why a number whose interval is `share` of it to either side may not be used; empty where it may."""
     if share <= USABLE[name]:
         return ""
-    return f"± {100 * share:.3g} % so far; known from ± {100 * USABLE[name]:.0f} % on"
+    return f"± {100 * share:.3g} % so far; enough from ± {100 * USABLE[name]:.0f} % on"
 
 
 def _weakened(row: Parameter, reason: str, advice: str) -> Parameter:

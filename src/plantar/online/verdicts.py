@@ -14,8 +14,8 @@ from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 
 UNTOLD = (
-    "without a batch result: a robot file that is wrong does not show here, a memory of the rubber in large motions "
-    "only"
+    "without a result of `identify feet`: errors of the robot file do not show here, and hysteresis of the rubber only "
+    "in large motions"
 )
 
 

@@ -74,7 +74,7 @@ def assumption_table(rows: Sequence[Assumption]) -> Table:
     columns = Column.words(*feet_text.ASSUMPTION_HEADS)
     remark = (
         "Std is the deviation under uncertainty: in the robot file. The last columns: the 95 % interval of K and C if "
-        "nothing else were wrong, of the axis where it is widest. Tell the robot file what is better known."
+        "nothing else were wrong, of the axis where it is widest. Write what you know better into the robot file."
     )
     return Table.of(
         "What the robot file may be wrong about", columns, feet_text.assumption_cells(rows), remark=remark

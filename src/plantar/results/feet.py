@@ -235,7 +235,7 @@ class FeetResult:
 
     @classmethod
     def _from_dict(cls, content: Mapping[str, Any], path: Path) -> FeetResult:
-        comparisons, laws = (value_of(list[Any], content, key, path, []) for key in ("comparisons", "laws"))
+        laws = value_of(list[Any], content, "laws", path, [])
         delay = content.get("latency")
         return cls(
             robot=value_of(str, content, "robot", path),
@@ -253,9 +253,7 @@ class FeetResult:
             compliance=value_of(dict[str, float], content, "compliance", path, {}),
             diagnosis=rows_of(Diagnosis, content, "diagnosis", path),
             assumptions=rows_of(Assumption, content, "assumptions", path),
-            comparisons=tuple(
-                Comparison.from_dict(row, f"comparisons.{k}", path) for k, row in enumerate(comparisons)
-            ),
+            comparisons=rows_of(Comparison, content, "comparisons", path),
             campaign=value_of(dict[str, Any], content, "campaign", path) if "campaign" in content else None,
             stances=rows_of(StanceStiffness, content, "stances", path),
             walks=rows_of(WalkStiffness, content, "walks", path),

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
 from plantar.conventions import Axis
 from plantar.logs.motion_log import MotionLog
-from plantar.results.stored import row_of, rows_of
+from plantar.results.stored import row_of
 
 Verdict = Literal["usable", "weak", "unidentifiable"]
 
@@ -155,14 +155,11 @@ class AxisModel:
         if not isinstance(entry, Mapping):
             return row_of(cls, entry, place, path)
         content = {("model" if key == "law" else key): value for key, value in entry.items()}
-        tried = content.pop("ranking", None)
-        found = row_of(cls, content, place, path)
-        if tried is None:
-            return found
-        tried = [{**row, "model": row.get("law")} if isinstance(row, Mapping) else row for row in tried]
-        return replace(
-            found, ranking=rows_of(Candidate, {f"{place}.ranking": tried}, f"{place}.ranking", path)
-        )
+        if isinstance(tried := content.get("ranking"), list):
+            content["ranking"] = [
+                {**row, "model": row.get("law")} if isinstance(row, Mapping) else row for row in tried
+            ]
+        return row_of(cls, content, place, path)
 
 
 @dataclass(frozen=True)
@@ -221,12 +218,3 @@ class Comparison:
     settings: Mapping[str, Any]
     parameters: tuple[Parameter, ...]
     validation: tuple[ValidationRow, ...]
-
-    @classmethod
-    def from_dict(cls, entry: object, place: str, path: Path | None) -> Comparison:
-        """What `asdict` wrote; `place` and `path` say in an error where it stands."""
-        if not isinstance(entry, Mapping):
-            return row_of(cls, entry, place, path)
-        parameters = rows_of(Parameter, entry, "parameters", path)
-        validation = rows_of(ValidationRow, entry, "validation", path)
-        return row_of(cls, {**entry, "parameters": parameters, "validation": validation}, place, path)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, is_dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
 
 from pydantic_core import ValidationError
 
@@ -34,10 +34,7 @@ def rows_of(
 
 def row_of(kind: type[Row], entry: object, place: str, path: Path | None) -> Row:
     """One row as a `kind`, a dataclass; `place` says in an error where it stands in the file."""
-    if isinstance(entry, Mapping):
-        hints = _hints(kind)  # type: ignore[arg-type]  # classes are hashable
-        entry = {name: _infinite(value, hints.get(name)) for name, value in entry.items()}
-    return _checked(kind, entry, place, path)
+    return _checked(kind, _infinite(entry, kind), place, path)
 
 
 def value_of(
@@ -64,13 +61,20 @@ def _checked(kind: type[Row], entry: object, place: str, path: Path | None) -> R
     return checked
 
 
-def _infinite(value: object, hint: object) -> object:
-    """JSON has no number that is not finite and holds null: NaN again where a number must stand, an open interval."""
+def _infinite(value: object, hint: Any) -> object:
+    """JSON has no number that is not finite and holds null: NaN again where a number must stand, an open interval; also
+    inside dataclasses and tuples of them."""
     if value is None and hint is float:
         return math.nan
     if isinstance(value, list) and len(value) == 2 and hint in _INTERVALS:
         low, high = value
         return (-math.inf if low is None else low, math.inf if high is None else high)
+    if isinstance(value, Mapping) and is_dataclass(hint):
+        hints = _hints(hint)  # type: ignore[arg-type]  # classes are hashable
+        return {name: _infinite(one, hints.get(name)) for name, one in value.items()}
+    if isinstance(value, list):
+        kinds = [get_args(one)[0] for one in (hint, *get_args(hint)) if get_args(one)[1:] == (...,)]
+        return [_infinite(one, kinds[0]) for one in value] if kinds else value
     return value
 
 

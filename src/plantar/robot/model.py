@@ -131,7 +131,10 @@ class RobotModel:
     @cached_property
     def tree(self) -> KinematicTree:
         """The joints of `model` as plain arrays. Raises RobotError where one has several coordinates."""
-        return KinematicTree.from_model(self.model)
+        try:
+            return KinematicTree.from_model(self.model)
+        except RobotError as error:
+            raise RobotError(str(error), path=self.urdf_path) from None
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from plantar.files import read_bounded
 
 LIMIT = 64 * 2**20  # bytes
 _DECLARES = re.compile(r"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
+TURNING = ("revolute", "continuous", "prismatic")  # joints that have an axis
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -88,6 +89,14 @@ def _check(root: ET.Element, path: Path) -> None:
             where = f"{key} of <{element.tag}> in {owner.tag} '{owner.get('name')}'"
             valid = "a number" if count == 1 else f"{count} numbers with spaces between"
             raise RobotError(where, path=path, value=text, valid=valid)
+        if (
+            element.tag == "axis"
+            and text
+            and owner.get("type") in TURNING
+            and not any(map(float, text.split()))
+        ):
+            where = f"axis of {owner.get('type')} joint '{owner.get('name')}' has no direction"
+            raise RobotError(where, path=path, value=text, valid="a unit vector, such as 0 0 1")
         if element.tag == "mass" and float(text or 0) < 0:
             where = f"the mass of link '{owner.get('name')}' is negative"
             raise RobotError(where, path=path, value=text, valid="kg, 0 or more")

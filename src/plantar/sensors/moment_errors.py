@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, islice
 
 import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.dynamics import Contact, Equation, equation_of
+from plantar.dynamics import Contact, Equation
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
@@ -30,7 +30,6 @@ LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerom
 LATE_TORQUES = 0.005  # s, of torques behind the forces of the same sensors: mostly read together
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
-TOGETHER = 8  # signals that are filtered at once
 ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
 ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
@@ -68,73 +67,54 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     so strongly that noise is small beside it.
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
-    equation = equation_of(robot.floating_model)
+    equation, period = equation_of(robot.floating_model), residual.pair.period
     motion = inertial_motion(
         robot, equation, residual.signals, residual.kept, encoders_late=residual.encoders_late
     )
-    readings, zeros, measured, by_torques = _reading_columns(robot, equation, residual, motion.positions)
+    read = [
+        _SensorReadings.of(robot, equation, residual, place, motion.positions)
+        for place in range(len(robot.feet))
+    ]
+    zeros = [-channel for one in read for channel in one.transfer.transpose(2, 0, 1)]
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
+    by_torques = np.sum([one.by_torques for one in read], axis=0)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *by_torques, *zeros]
-    period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
+    errors = equation.base_wrenches(motion, drawn_parameter_errors(robot))
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
     (predicted,) = equation.base_wrenches(motion, residual.parameters[None])
-    missing = predicted - measured
-    del residual  # and the motion of all samples that it came from
-    errors = chain.from_iterable(
-        equation.base_wrenches(motion, drawn[first : first + TOGETHER])
-        for first in range(0, len(drawn), TOGETHER)
-    )
-    every = _quick(chain([missing], readings, slopes, errors), period)
-    samples, signals = len(missing), 1 + count + len(drawn)
-    if steps:
-        rows = np.empty((6, signals, samples))
-        for first, some in every:
-            _put(rows, first, some)
-        return _errors(robot, rows, count, period, CUTOFF)
-    # Slopes are smooth: their noise is not white, and small below BAND.
-    stride, noisy = max(1, round(1 / (KEPT_PER_BAND * BAND * period))), 1 + len(readings)
-    slow, noise = np.empty((6, signals, -(-samples // stride))), np.empty((6, noisy, samples))
-    for first, some in every:
-        read = low_pass(some, period, BAND)
-        _put(slow, first, read[::stride])
-        if first < noisy:
-            _put(noise, first, (some - read)[:, : 6 * (noisy - first)])
-    found = _errors(robot, slow, count, stride * period, BAND)
+    missing = predicted - np.sum([one.measured for one in read], axis=0)
+    del residual, motion  # of all samples
+    band = CUTOFF if steps else BAND
+    stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
     share = _below_to_above(period) / stride
-    found.products[..., :noisy, :noisy] -= share * _products(noise)
-    return found
-
-
-def _quick(signals: Iterable[Array], period: float) -> Iterator[tuple[int, Array]]:
-    """Signals (n, 6) without what postures and drifting zeros do to them: some at a time, (n, 6 s), with the number of
-    the first of these. All at once they would be the largest array of any log.
-    """
-    rest, first = iter(signals), 0
-    while some := [*islice(rest, TOGETHER)]:
-        yield first, without_slow_cosines(np.hstack(some), period, SLOW)
-        first += len(some)
-
-
-def _put(rows: Array, first: int, some: Array) -> None:
-    """Write signals (n, 6 s) into (6, k, n), the rows of Newton's law apart, from the `first` of the k on."""
-    rows[:, first : first + some.shape[1] // 6] = some.reshape(len(some), -1, 6).transpose(2, 1, 0)
-
-
-def _errors(robot: RobotModel, rows: Array, count: int, period: float, band: float) -> MomentErrors:
-    """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
-    columns, drawn = rows[:, : count + 1].copy(), rows[:, count + 1 :]
-    products, wrong = _products(columns), columns[:, 1:] @ drawn.transpose(0, 2, 1)
+    columns, products, drawn = [], [], []
+    for row in range(6):  # of Newton's law: all at once would be the largest array of any log
+        signals = [missing[:, row], *_in_order([one.columns(row) for one in read])]
+        noisy, count = len(signals), len(signals) + len(slopes)
+        signals += [one[:, row] for one in (*slopes, *errors)]
+        # Without what postures and drifting zeros do to them.
+        quick = without_slow_cosines(np.column_stack(signals), period, SLOW)
+        slow = quick if steps else low_pass(quick, period, BAND)
+        own = slow[::stride].T
+        columns.append(own[:count].copy())
+        drawn.append(columns[-1][1:] @ own[count:].T)
+        products.append(_products(columns[-1]))
+        if not steps:  # slopes are smooth: their noise is not white, and small below BAND
+            noise = quick[:, :noisy] - slow[:, :noisy]
+            products[-1][:, :noisy, :noisy] -= share * _products(noise.T)
+    told, period = np.array(columns), stride * period
     # A filtered signal has two independent samples in a period of its cutoff.
-    independent = 2 * band * period
-    zeros = _zero_deviations(robot)
-    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, independent, zeros)
+    independent, zero_deviations = 2 * band * period, _zero_deviations(robot)
+    between = np.stack(products, axis=1)
+    return MomentErrors(
+        told[:, 1:], told[:, 0], between, np.array(drawn), period, independent, zero_deviations
+    )
 
 
 def _products(columns: Array) -> Array:
-    """Of columns (6, k, n) with each other, in each part of the log, (parts, 6, k, k)."""
-    parts = np.array_split(columns, PARTS, axis=2)
-    return np.array([part @ part.transpose(0, 2, 1) for part in parts])
+    """Of columns (k, n) with each other, in each part of the log, (parts, k, k)."""
+    return np.array([part @ part.T for part in np.array_split(columns, PARTS, axis=1)])
 
 
 def prior_deviations(robot: RobotModel) -> Array:
@@ -154,33 +134,52 @@ def turn_columns(robot: RobotModel) -> dict[str, slice]:
     return {foot: slice(start, start + 3) for foot, start in starts.items()}
 
 
-def _reading_columns(
-    robot: RobotModel, equation: Equation, residual: NewtonEulerResidual, positions: Array
-) -> tuple[list[Array], list[Array], Array, Array]:
-    """What gains of torques and other errors of the feet's sensors add to the measured side; what one newton or
-    newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; the
-    measured side, and how it changes with the moments at which all torques about pitch and about roll are read,
-    (2, n, 6). positions: of the joints (n, joints).
+@dataclass(frozen=True)
+class _SensorReadings:
+    """What one foot's sensor reads, `wrench` (n, 6), its `transfer` (n, 6, 6) to the root, and the `errors` (k, 6, 6)
+    that may act on what it reads: gains of the torques about pitch and roll, then those of `_sensor_errors`.
+
+    `by_torques` (2, n, 6): how the measured side changes with the moments at which these torques are read.
     """
-    matrices = _sensor_errors(robot)[0]
-    gains: list[list[Array]] = [[], []]
-    others, zeros, measured, by_torques = list[Array](), list[Array](), np.zeros(()), np.zeros(())
-    for place, foot in enumerate(robot.feet.values()):
-        wrench = residual.readings[:, 6 * place : 6 * place + 6]
-        contact = Contact(*robot.frame(foot.wrench.placement))
-        transfer = equation.base_transfer(positions, contact)
+
+    wrench: Array
+    transfer: Array
+    errors: Array
+    by_torques: Array
+
+    @classmethod
+    def of(
+        cls,
+        robot: RobotModel,
+        equation: Equation,
+        residual: NewtonEulerResidual,
+        place: int,
+        positions: Array,
+    ) -> _SensorReadings:
+        """Of one of the feet, by its place; positions: of the joints (n, joints)."""
+        foot, own = [*robot.feet.values()][place], slice(6 * place, 6 * place + 6)
+        transfer = equation.base_transfer(positions, Contact(*robot.frame(foot.wrench.placement)))
         alone = np.zeros((2, 6, 6))
         alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(robot, foot)]
-        wrong = np.concatenate([alone, matrices]) @ wrench.T
-        carried = np.asarray(transfer @ wrong.transpose(2, 1, 0)).transpose(2, 0, 1)
-        for own, column in zip(gains, carried[:2], strict=True):
-            own.append(column)
-        others += [*carried[2:]]
-        zeros += [*-transfer.transpose(2, 0, 1)]
-        measured = measured + carried[2]  # the gain of all channels
-        changes = alone @ residual.changes[:, 6 * place : 6 * place + 6].T
-        by_torques = by_torques + np.asarray(transfer @ changes.transpose(2, 1, 0)).transpose(2, 0, 1)
-    return [*gains[0], *gains[1], *others], zeros, measured, by_torques
+        by_torques = (transfer @ (alone @ residual.changes[:, own].T).transpose(2, 1, 0)).transpose(2, 0, 1)
+        errors = np.concatenate([alone, _sensor_errors(robot)[0]])
+        return cls(residual.readings[:, own], transfer, errors, by_torques)
+
+    @property
+    def measured(self) -> Array:
+        """What the wrench is at the root, (n, 6)."""
+        return np.asarray((self.transfer @ self.wrench[..., None])[..., 0])
+
+    def columns(self, row: int) -> Array:
+        """What each error adds to one row of the measured side, (k, n)."""
+        pairs = self.transfer[:, row, :, None] * self.wrench[:, None]
+        return np.asarray(self.errors.reshape(-1, 36) @ pairs.reshape(-1, 36).T)
+
+
+def _in_order(feet: Sequence[Array]) -> Iterator[Array]:
+    """Columns (k, n) of each foot as `MomentErrors` has them: gains of pitch, gains of roll, then all others."""
+    yield from (own[gain] for gain in range(2) for own in feet)
+    yield from (column for own in feet for column in own[2:])
 
 
 def _zero_deviations(robot: RobotModel) -> Array:

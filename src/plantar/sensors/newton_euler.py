@@ -9,7 +9,8 @@ import numpy as np
 
 from plantar.contact.phases import shaken
 from plantar.conventions import GRAVITY, Array, Mask
-from plantar.dynamics import Contact, equation_of, model_parameters
+from plantar.dynamics import Contact, model_parameters
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
 from plantar.dynamics.motion import Motion
 from plantar.estimation.delays.delay import Pair, closes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, device_of
 from plantar.signals.segments import runs
 
 FAR_STEPS = 10.0  # usual steps from sample to sample, by which the angle must jump: no joint moves so
@@ -85,7 +85,7 @@ def _devices(log: MotionLog, kind: str) -> list[tuple[str, ...]]:
     by_name = dict[str, list[str]]()
     for name in log.columns:
         if name.startswith(f"{kind}."):
-            by_name.setdefault(name.split(".")[1], []).append(name)
+            by_name.setdefault(device_of(name), []).append(name)
     return [tuple(names) for names in by_name.values()]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, device_of
 from plantar.signals.segments import runs
 
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
@@ -67,7 +67,7 @@ def held_in(log: MotionLog, column: str) -> Mask:
     """`held_samples` of one column of an evenly sampled log, (N,)."""
     held = held_samples(log.column(column), log.period, full_scale=".orientation." not in column)
     if held.any() and column.startswith("wrench."):
-        held &= ~_untouched(log, column.split(".")[1])
+        held &= ~_untouched(log, device_of(column))
     return held
 
 
@@ -77,7 +77,7 @@ def _untouched(log: MotionLog, sensor: str) -> Mask:
     That is a simulated foot in the air: it reads its zeros, the same ones in each swing. A frozen sensor holds what it
     happened to read.
     """
-    channels = log.stack([name for name in log.columns if name.startswith(f"wrench.{sensor}.")])
+    channels = log.stack([name for name in log.columns if device_of(name) == sensor])
     still = np.concatenate([[False], (np.diff(channels, axis=0) == 0).all(axis=1)])
     stretches = [slice(run.start - 1, run.stop) for run in runs(still)]
     read = [tuple(channels[run.start]) for run in stretches]

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
-from plantar.logs.motion_log import MotionLog
+from plantar.errors import clock
+from plantar.logs.motion_log import MotionLog, device_of
 from plantar.notes import Note, Severity
 from plantar.signals.footfalls import footfalls
 
@@ -50,7 +51,7 @@ def without_spikes(log: MotionLog) -> MotionLog:
         bridged[name] = column.copy()
         bridged[name][places] = np.interp(places, place[fine], column[fine])
         first = int(places[0])
-        told.append(f"{name} ({places.size}, first at t = {log.time[first]:g} s: {column[first]:.4g})")
+        told.append(f"{name} ({places.size}, first at t = {clock(log.time[first])} s: {column[first]:.4g})")
     more = f" and {len(told) - 3} more columns" if len(told) > 3 else ""
     text = f"{log.name}: lone samples far from their neighbours bridged: {', '.join(told[:3])}{more}"
     severity: Severity = "warning" if max(map(len, spikes.values())) > SERIOUS * len(log) else "info"
@@ -79,10 +80,9 @@ def _landings(log: MotionLog) -> Mask:
     """Samples (N,) around those at which a foot lands or leaves: the sole's edge knocks there, on every sensor."""
     around = np.zeros(len(log), dtype=bool)
     reach = max(1, round(GROUP_GAP / log.period))
-    for sensor in {
-        name[len("wrench.") :].rsplit(".", 2)[0] for name in log.columns if name.startswith("wrench.")
-    }:
-        for change in footfalls(log, sensor):
+    sensors = {device_of(name) for name in log.columns if name.startswith("wrench.")}
+    for sensor in sensors:
+        for change in footfalls(log, sensor.removeprefix("wrench.")):
             around[max(0, change - reach) : change + reach + 2] = True
     return around
 

@@ -14,7 +14,7 @@ from plantar.signals.resampling import with_continuous_quaternions
 
 LOWEST_RATE = 200.0  # Hz, that is kept: landings last some samples, delays are interpolated between two
 BAND = 0.8  # of half the rate that is kept: faster changes are filtered out first, or they would pass for slow ones
-TOGETHER = 8  # columns: the filter takes hardly longer for as many as for one, and more take memory
+TOGETHER = 4  # columns: the filter takes hardly longer for as many as for one, and more take memory
 
 
 def step_of(log: MotionLog) -> int:

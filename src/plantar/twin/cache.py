@@ -7,7 +7,8 @@ import io
 import os
 import sys
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -51,6 +52,18 @@ def key(*parts: str | Array) -> str:
     return digest.hexdigest()
 
 
+def kept(name: str, make: Callable[[], Mapping[str, Array]]) -> Mapping[str, Array]:
+    """The arrays kept under a key, else those of `make`, kept from now on: of all who ask at once, one makes them."""
+    if (arrays := load(name)) is not None:
+        return arrays
+    with _one_at_a_time(name):
+        if (arrays := load(name)) is not None:
+            return arrays
+        made = make()
+        save(name, made)
+        return made
+
+
 def load(name: str) -> dict[str, Array] | None:
     """The arrays kept under a key, or None when there are none or the file is damaged."""
     path = folder() / f"{name}.npz"
@@ -73,6 +86,26 @@ def save(name: str, arrays: Mapping[str, Array]) -> None:
         _prune(folder().glob("*.npz"))
     except (PlantarError, OSError):
         return
+
+
+@contextmanager
+def _one_at_a_time(name: str) -> Iterator[None]:
+    """Threads and processes with the same key wait for each other, where the system locks files."""
+    try:
+        import fcntl
+
+        folder().mkdir(parents=True, exist_ok=True)
+        lock = open(folder() / f"{name}.lock", "wb")  # noqa: SIM115
+    except (ImportError, OSError):
+        yield
+        return
+    with lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        try:
+            yield
+        finally:
+            Path(lock.name).unlink(missing_ok=True)
+            fcntl.flock(lock, fcntl.LOCK_UN)  # copies of this process may hold the file, too
 
 
 def _prune(files: Iterable[Path]) -> None:

@@ -198,19 +198,14 @@ def planned(name: str, robot: RobotModel, **options: float | None) -> Plan:
     postures = postures_of(robot)
     options = {option: size for option, size in options.items() if size is not None}
     key = plan_key(name, robot, postures, options)
-    if (kept := cache.load(key)) is not None:
-        return plan_from(name, kept)
-    plan = plan_motion(name, robot, postures, **options)
-    cache.save(key, plan_arrays(plan))
-    return plan
+    return plan_from(
+        name, cache.kept(key, lambda: plan_arrays(plan_motion(name, robot, postures, **options)))
+    )
 
 
 def rolled(plan: Plan, robot: RobotModel, physics: Physics, progress: Share | None = None) -> Rollout:
     """`roll_out` on the scene of `physics`, kept in the cache."""
     xml = scene_xml(robot, plan, physics, hrp2.look(robot))
     key = rollout_key(plan, physics, xml)
-    if (kept := cache.load(key)) is not None:
-        return rollout_from(plan.name, kept)
-    rollout = roll_out(robot, plan, physics, xml, progress)
-    cache.save(key, rollout_arrays(rollout))
-    return rollout
+    made = cache.kept(key, lambda: rollout_arrays(roll_out(robot, plan, physics, xml, progress)))
+    return rollout_from(plan.name, made)

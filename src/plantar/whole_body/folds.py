@@ -10,7 +10,8 @@ import numpy as np
 from scipy import optimize
 
 from plantar.conventions import Array, Mask
-from plantar.dynamics import BaseParameters, Equation, EquationStream, Motion, RowFactor, stacked
+from plantar.dynamics import BaseParameters, Equation, EquationStream, Motion, RowFactor
+from plantar.dynamics.stream import stacked
 
 FOLDS = 6  # over all recordings
 

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS
-from plantar.dynamics import parameter_name, solve_triangle
+from plantar.dynamics.base_parameters import parameter_name
 from plantar.dynamics.consistency import is_consistent
 from plantar.dynamics.equation import PER_LINK
+from plantar.dynamics.fit import solve_triangle
 from plantar.estimation.residual_covariance import interval95, relative_std_percent
 from plantar.notes import Note, listing, unique
 from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialParameter, JointParameter

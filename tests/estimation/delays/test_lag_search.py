@@ -92,7 +92,10 @@ def test_lags_that_miss_a_third_more_are_as_good(second: float, near: int) -> No
     assert found.power[0] == pytest.approx(1 / 1.01)
 
 
-def test_a_foot_late_by_less_than_a_step_of_the_grid_is_found_where_the_load_changes_feet() -> None:
+@pytest.mark.parametrize("late", [(0.012, -0.003), (-0.024, -0.024)])
+def test_a_foot_late_by_less_than_a_step_of_the_grid_is_found_where_the_load_changes_feet(
+    late: tuple[float, float],
+) -> None:
     """Of feet that hand the weight to each other, whatever the encoders; what nobody told tells nothing."""
     time = PERIOD * np.arange(400)
 
@@ -105,7 +108,6 @@ def test_a_foot_late_by_less_than_a_step_of_the_grid_is_found_where_the_load_cha
         own = [tones(0, time + lag - by) / 2 + sign * 3 * tones(1, time + lag - by) for lag in LAGS]
         return np.array(own)
 
-    late = (0.012, -0.003)
     measured = np.array([foot(sign, by) for sign, by in zip((1, -1), late, strict=True)])
     hand = np.where(time[:, None] < 10, 30 * tones(2, time), 0.0)
     grids = [

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from biped import record, sway
 from feet_trials import noisy
 from plantar.errors import DataError
-from plantar.faults.joints.closed_chain import check_closed_chain
+from plantar.faults.joints.closed_chain import _own_angle, _Stand, check_closed_chain
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -135,3 +137,20 @@ def test_a_robot_that_stands_on_the_foot_in_the_air_has_its_sides_exchanged(kind
     (found,) = check_closed_chain(twin, walk.with_columns(exchanged))
     assert (found.code, found.fatal) == ("joint_names", True)
     assert "cm higher than the one in the air" in found.text
+    # Neither a second or two on one foot says so, nor a leg that stands at its neutral posture for lack of a column.
+    log = walk.with_columns(exchanged)
+    assert list(check_closed_chain(twin, log.select(log.time < log.time[0] + 5.2))) == []
+    kept = {name: log.column(name) for name in log.columns if name != "joint.RLEG_JOINT0.position"}
+    assert len(kept) < len(log.columns)
+    assert list(check_closed_chain(twin, replace(log, columns=kept))) == []
+
+
+def test_a_joint_that_moves_no_sole_closes_no_chain() -> None:
+    """Of an arm the legs' closed chain says nothing, whatever the soles do."""
+    twin, walk = hrp2.robot(), walked()
+    rows = slice(0, 200)
+    orientation = walk.orientation(twin.required_imu.name)
+    assert orientation is not None
+    wrenches = {name: walk.wrench(foot.wrench.name)[rows] for name, foot in twin.feet.items()}
+    stand = _Stand(twin, orientation[rows], walk.positions(twin)[rows], wrenches)
+    assert _own_angle(stand, "RARM_JOINT0", "right") == (0.0, False)

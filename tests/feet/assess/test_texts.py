@@ -63,8 +63,8 @@ def with_(**change: object) -> Evidence:
             WEAK, SOFT, "measure the left sole's outline for the robot file, or sway by smaller angles")),
         (NARROW, with_(softened=0.29), (YES, "95 % interval ±2.5 %, 63 s used", None)),
         (NARROW, with_(noise=0.131), (
-            WEAK, "the angle's noise may be 13 % of the slip angle, and an element turns by the angle itself",
-            "use an attitude that wanders less: no motion makes the slip angle larger beside it")),
+            WEAK, "the angle's noise may be 13 % of the slip angle, and hysteresis depends on the angle itself",
+            "use an attitude that wanders less: beside its errors the slip angle is small in any motion")),
         (NARROW, with_(noise=0.129), (YES, "95 % interval ±2.5 %, 63 s used", None)),
         (NARROW, with_(caution="because"), (WEAK, "because", LARGER)),
     ],

@@ -106,6 +106,11 @@ def test_the_offset_follows_what_noise_had_taken_off_the_stiffness() -> None:
 def test_a_clean_angle_is_left_alone_and_one_of_mostly_noise_is_told() -> None:
     recordings, fit = noisy_angles(1e-5)
     assert unattenuated(fit, recordings, shared=False) is fit
+    # However sure the numbers are: a thousandth of them is little.
+    for size, left in ((1e-4, True), (3e-3, False)):
+        recordings, fit = noisy_angles(size)
+        fit = replace(fit, covariance=1e-12 * np.eye(2))
+        assert (unattenuated(fit, recordings, shared=False) is fit) == left
     recordings, fit = noisy_angles(0.1)
     (note,) = unattenuated(fit, recordings, shared=False).notes
     assert (note.code, note.severity) == ("noisy_regressors", "warning")

@@ -171,6 +171,17 @@ def test_a_cause_is_as_sure_as_what_it_comes_from() -> None:
     assert found["delay"].share[1] == pytest.approx(0.001 * 400.0, rel=0.02), "K·delay off the damping"
 
 
+def test_a_delay_in_doubt_counts_the_way_that_moves_the_stiffness_more() -> None:
+    """Of K·q + C·q̇ a later torque has lost C·ω·sin and K·(1 - cos); an earlier one loses and gains, and loses less."""
+    angle = swayed(2000)
+    recording = made_recording("sway", angle, 400.0 * angle + 20.0 * np.gradient(angle, PERIOD))
+    fit = fit_axis([recording], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    late = SensorDelay(0.0, 0.01, 7.0, False, Note("delay", "info", ""), doubtful=True)
+    found = causes_of(fit, [recording], late, VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 0.0}, 5.0))
+    assert found["delay"].effect[0] < 0.0 < found["delay"].effect[1]
+
+
 def test_what_spring_and_element_take_from_each_other() -> None:
     """Before it slips, the element is a spring of slip_torque / slip_angle beside the other."""
     angle = swayed(2000)

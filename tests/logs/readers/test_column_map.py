@@ -43,6 +43,34 @@ def test_a_map_that_cannot_hold_is_one_clear_line(
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("columns", "where"),
+    [
+        ({"joints": ["a", "b", "a"]}, "columns.joints names a joint twice"),
+        (
+            {"ports": {"sh_q": {"role": "joints.position", "joints": ["b", "b", "a"]}}},
+            "columns.ports.sh_q.joints",
+        ),
+    ],
+)
+def test_a_joint_that_is_named_twice_is_refused(
+    columns: dict[str, object], where: str, tmp_path: Path
+) -> None:
+    (tmp_path / "walk.sh_q").write_text("0.0 1 2 3\n0.1 1 2 3\n0.2 1 2 3\n")
+    with pytest.raises(LogError, match=where):
+        open_log(tmp_path / "walk.sh_q", make_robot(tmp_path / "robot", columns=columns))
+
+
+@pytest.mark.parametrize("cell", ["--", ""])
+def test_a_column_that_is_there_but_holds_no_numbers_is_not_called_missing_alone(
+    cell: str, tmp_path: Path
+) -> None:
+    (tmp_path / "log.csv").write_text(f"time,neck_deg,hip_deg\n0,{cell},1\n1,{cell},2\n2,{cell},3\n")
+    robot = make_robot(tmp_path / "robot", columns={"joint.neck.position": "neck_deg"})
+    with pytest.raises(LogError, match=r"'neck_deg': is missing, or holds a text or nothing \(columns"):
+        open_log(tmp_path / "log.csv", robot)
+
+
 def test_one_line_maps_the_columns_of_all_joints(tmp_path: Path) -> None:
     """A joint with a line of its own keeps it; a column without a joint's name is none."""
     (tmp_path / "log.csv").write_text("time,q_neck,q_waist,q_,other\n0,180,9,9,9\n1,90,9,9,9\n2,0,9,9,9\n")

@@ -38,6 +38,22 @@ def test_a_unit_of_another_quantity_is_refused_with_those_that_fit() -> None:
         factor("kgf", "torque", "columns.x", Path("robot.yaml"))
 
 
+def test_a_whole_wrench_takes_no_unit_and_a_half_of_it_does() -> None:
+    values = np.arange(1.0, 7.0)[None]
+    for role in ("wrench.l", "wrench.l.torque_first"):
+        with pytest.raises(LogError, match=r"value 'kN': wrench\.l.*have no unit in common"):
+            role_columns(role, values, (), Path("a.log"), unit="kN")
+    half = role_columns("wrench.l.force", values[:, :3], (), Path("a.log"), unit="kN")
+    assert half["wrench.l.force.z"][0] == 3000
+
+
+def test_roll_pitch_and_yaw_take_unit_and_sign() -> None:
+    turned = role_columns(
+        "imu.a.orientation.rpy", np.array([[-90.0, 0, 0]]), (), Path("a.log"), unit="deg", sign=-1.0
+    )
+    assert [turned[f"imu.a.orientation.{axis}"][0] for axis in "wx"] == pytest.approx([0.5**0.5] * 2)
+
+
 def test_unit_and_sign_go_into_the_columns_in_their_order() -> None:
     values = np.arange(1.0, 7.0)[None]
     path = Path("a.log")

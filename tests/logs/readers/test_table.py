@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gzip
+import os
 from pathlib import Path
+from threading import Barrier
 
 import numpy as np
 import pyarrow as pa
@@ -11,6 +13,7 @@ import pyarrow.parquet as pa_parquet
 import pytest
 
 from biped import record, sway
+from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name, open_log
@@ -77,19 +80,27 @@ def test_parquet_is_read_a_column_for_each_core_at_a_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All columns at once would take as much memory as their numbers, and one leaves cores idle."""
-    table, asked = pa.table({"time": [0.0, 0.1], **{f"joint.{x}.position": [1.0, 2.0] for x in "abcd"}}), []
+    names = ["time", *(f"joint.{x}.position" for x in "abcd")]
+    table = pa.table({name: [place + 0.0, place + 1.0] for place, name in enumerate(names)})
     pa_parquet.write_table(table, tmp_path / "log.parquet")
-    batches = pa_parquet.ParquetFile.iter_batches
+    batches, at_work, most = pa_parquet.ParquetFile.iter_batches, list[str](), list[int]()
+    together = Barrier(3)
 
-    def iter_batches(file: pa_parquet.ParquetFile, size: int, columns: list[str]) -> object:
-        asked.append(len(columns))
-        return batches(file, size, columns=columns)
+    def iter_batches(file: pa_parquet.ParquetFile, size: int, columns: list[str], **options: bool) -> object:
+        (name,) = columns
+        at_work.append(name)
+        if name in names[:3]:  # of each core the first one
+            together.wait(10)
+        most.append(len(at_work))
+        yield from batches(file, size, columns=columns, **options)
+        at_work.remove(name)
 
     monkeypatch.setattr(pa, "cpu_count", lambda: 3)
     monkeypatch.setattr(pa_parquet.ParquetFile, "iter_batches", iter_batches)
     log = open_log(tmp_path / "log.parquet")
-    assert asked == [3, 2]
-    assert all(values.tolist() == [1.0, 2.0] for values in log.columns.values())
+    assert max(most) == 3
+    read = [log.time, *log.columns.values()]
+    assert [values.tolist() for values in read] == [[place, place + 1] for place in range(5)]
 
 
 def test_columns_may_stand_in_any_order_and_have_windows_ends(tmp_path: Path) -> None:
@@ -101,6 +112,16 @@ def test_columns_may_stand_in_any_order_and_have_windows_ends(tmp_path: Path) ->
 
 def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path: Path) -> None:
     assert len(open_log(write(tmp_path, b"\xef\xbb\xbf" + csv_text().encode()))) == 5
+
+
+def test_nanoseconds_since_1970_are_numbers(tmp_path: Path) -> None:
+    """As pandas and bags stamp samples: more digits than a float64 has, which is no fault of the file."""
+    stamps = np.int64(1_700_000_000_123_456_789) + 10_000_000 * np.arange(5)
+    angles = {"joint.a.position": np.arange(5.0)}
+    pa_parquet.write_table(pa.table({"stamp": stamps, **angles}), tmp_path / "log.parquet")
+    robot = make_robot(tmp_path / "robot", columns={"time": {"from": "stamp", "unit": "ns"}})
+    log = open_log(tmp_path / "log.parquet", robot)
+    np.testing.assert_allclose(log.time - 1.7e9, 0.123456789 + 0.01 * np.arange(5), atol=1e-6)
 
 
 @pytest.mark.parametrize("hole", ["", "nan", "NaN", "null"])
@@ -128,6 +149,16 @@ def test_columns_of_no_known_name_are_left_with_a_note(tmp_path: Path) -> None:
 def test_a_text_among_ignored_columns_does_no_harm(tmp_path: Path) -> None:
     log = open_log(write(tmp_path, "time,label,joint.a.position\n0,walk,1\n0.1,stand,2\n"))
     np.testing.assert_array_equal(log.column("joint.a.position"), [1, 2])
+
+
+@pytest.mark.parametrize("more", [",,", ",x,x", ",,x,x,x"])
+def test_what_is_not_read_may_stand_twice(tmp_path: Path, more: str) -> None:
+    """Spreadsheets end lines with commas, and loggers have columns of one name."""
+    lines = csv_text().splitlines()
+    text = "\n".join([lines[0] + more, *(line + "," * more.count(",") for line in lines[1:])]) + "\n"
+    log = open_log(write(tmp_path, text))
+    assert list(log.columns) == HEADER.split(",")[1:]
+    assert [note.text.count("\0") for note in log.notes] == [0]
 
 
 def test_missing_duplicate_and_texty_columns(tmp_path: Path) -> None:
@@ -281,6 +312,17 @@ def test_unknown_endings_and_missing_files(tmp_path: Path) -> None:
     folder.mkdir()
     with pytest.raises(LogError, match=r"folder\.csv"):
         open_log(folder)
+
+
+def test_a_name_that_is_no_text_is_refused_before_any_work(tmp_path: Path) -> None:
+    """As archives from other systems leave them; results, which name motions by files, could not be written."""
+    path = tmp_path / os.fsdecode(b"sway_\xe9.csv")
+    path.write_text(csv_text())
+    with pytest.raises(LogError, match=r"sway_\\udce9\.csv': has a name that is no text") as caught:
+        open_log(path)
+    assert str(caught.value).isascii()
+    fine = open_log(path.rename(tmp_path / "sw\u00e9 y\u00a0\u6447.csv"))
+    assert fine.name == "sw\u00e9 y\u00a0\u6447"
 
 
 def test_motions_are_named_by_files() -> None:

@@ -15,28 +15,28 @@ SIZE = re.compile(r"(\d+(?:\.\d*)?)\s*([KMGT]?)B?", re.IGNORECASE)
 LEAST_DELAY = 0.1  # ms: less cannot be told from none, and is what seconds look like
 
 MEMORY_HELP = (
-    "Most memory for the numbers of the logs, such as 500MB or 8GB. If left out: a quarter of this machine's memory. "
-    "A log that holds more is refused before it is read."
+    "Memory that the logs' numbers may take, such as 500MB or 8GB. If left out: a quarter of this machine's memory. "
+    "Logs that need more are refused before they are read."
 )
 DELAY_HELP = (
     "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out, it is estimated from "
-    "the logs, or taken from --result where a command has that option."
+    "the logs."
 )
 MODEL_HELP = (
     f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
     f"{AUTOMATIC} takes the one that predicts held-out motions best."
 )
 SWING_HELP = (
-    "Rubber that slips, for a target that holds no slip: amplitude of the motions to be right for, in rad. "
-    "If left out: the middle of the identified motions'."
+    "Where the rubber has hysteresis and the target has none: the spring and damper of motions with this amplitude "
+    "are written, in rad. If left out: the median amplitude of the identified motions."
 )
 PIVOT_HELP = (
-    "mujoco-contact: 'ground', or 'bush' for feet that turn about the bush centre as the robot's do; "
-    "the robot then stands lower, its soles in the ground."
+    "mujoco-contact: what feet turn about: 'ground', or 'bush', the bush centre, as the robot's feet do. "
+    "With 'bush' the robot stands lower, its soles in the ground."
 )
 LEAST_LOAD_HELP = (
-    "mujoco-contact: the least load that a foot does not give way under along z, of the robot's weight. "
-    "The less, the smaller the angle up to which K holds."
+    "mujoco-contact: share of the robot's weight below which a foot is soft along z. A smaller share suits feet that "
+    "are lightly loaded, but K then holds up to a smaller angle only."
 )
 
 

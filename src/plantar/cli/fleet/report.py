@@ -19,7 +19,7 @@ PAGE: Final = "fleet.html"
 SUMMARY: Final = "fleet.json"
 RUN_FILE: Final = "run.json"
 RUN_SCHEMA: Final = "plantar.fleet.run/1"
-RATE_HELP = "Alarms a robot and year where nothing changes."
+RATE_HELP = "False alarms to accept, per robot and year."
 
 
 def run(

@@ -22,10 +22,12 @@ from plantar.fleet.places import Store, is_remote
 from plantar.fleet.run import Outcome, Progress, run_fleet
 from plantar.results.io import dump_json
 
-OUT_HELP = "Folder, or fsspec URL such as s3://bucket/fleet, for what is finished, the tables and fleet.html."
-MEMORY_HELP = "Memory of each worker of our own, such as 2GB; a worker that takes more is started again."
+OUT_HELP = "Folder, or fsspec URL such as s3://bucket/fleet, for finished groups, tables and fleet.html."
+MEMORY_HELP = (
+    "Memory of each worker that this command starts, such as 2GB. A worker that takes more is restarted."
+)
 Workers = Annotated[
-    int | None, typer.Option(metavar="N", help="Processes on this machine; one a core if left out.", min=1)
+    int | None, typer.Option(metavar="N", help="Processes on this machine; one per core if left out.", min=1)
 ]
 Scheduler = Annotated[str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")]
 WorkerMemory = Annotated[

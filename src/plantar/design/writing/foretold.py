@@ -57,9 +57,9 @@ def _weak(
     most = bends[max(bends)] / TOLD_APART * found.factors[1] * found.told.stiffness
     return (
         f"{said}. Over this range of stiffness the motion bends it by {1e3 * least:.3g} mrad to either side; rubber "
-        f"that slips at {1e3 * SLIP_ANGLE:.3g} mrad is told from its spring beyond {1e3 * TOLD_APART:.3g}. That would "
-        f"need feet no stiffer than {most:.3g} N·m/rad: tell the stiffness more closely, or make the next motion with "
-        "--after this one's result"
+        f"that slips at {1e3 * SLIP_ANGLE:.3g} mrad is surely told from its spring beyond {1e3 * TOLD_APART:.3g}. That "
+        f"would need feet no stiffer than {most:.3g} N·m/rad: tell the stiffness more closely, or make the next motion "
+        "with --after this one's result"
     )
 
 

@@ -90,6 +90,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "settings": asdict(found.settings) | {"stiffness": told.stiffness, "damping": told.damping, "rate": rate},
         "stiffness_range": [factor * told.stiffness for factor in found.factors],
         "least_stiffness": found.least_stiffness,
+        "right_foot_ahead": {"value": round(found.legs.ahead, 6), "unit": "m"},
         "one_foot": {"stands": False, "least_stiffness": len(found.robot.feet) * found.least_stiffness},
         "parameters": parameters,
         "wanted": {

@@ -19,6 +19,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
         else "Make gentler versions with `--approach` and play those first."
     )
     touch = content["self_collision"]
+    ahead = 1e3 * content["right_foot_ahead"]["value"]
+    placed = f", the right one {ahead:.0f} mm ahead of the left one" if ahead else ", side by side"
     watched = (
         f"No links touched: {touch['pairs']} pairs were watched, by the URDF's collision geometry."
         if touch["checked"]
@@ -52,7 +54,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "",
             "## Before",
             "",
-            "- Move slowly to the first row. Both soles stand flat on a hard, level floor, placed as in that row.",
+            "- Move slowly to the first row. Both soles stand flat on a hard, level floor, placed as in that row"
+            f"{placed}.",
             "- The robot hangs in its crane with a slack rope; someone holds the emergency stop.",
             "- Joints are position controlled, the stabiliser is off: it would work against the motion.",
             f"- {gentler}",

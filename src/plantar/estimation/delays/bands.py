@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from os import cpu_count
 
 import numpy as np
 
@@ -17,6 +19,7 @@ END_CYCLES = 2.0
 MOST_ENDS = 0.5  # of a recording that ends may take
 # Of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %.
 LEAST_SHARE = 1e-4
+LONG = 10_000  # samples beyond which threads filter axes beside each other
 HALVES = (0, 2)  # the places of the parts that are halves
 
 
@@ -108,8 +111,10 @@ def bands_of(predicted: Array, measured: Array, by_delay: Array, period: float, 
             kept = signals[:own].copy()
             yield Band(sensors, kept, rates, products, by_rate, split, least[axis], width, stride * period)
 
-    # One axis after the other: all wrong models of all axes would be the largest array of any log.
-    return [_of_axes(axes) for axes in zip(*[[*along(axis)] for axis in range(6)], strict=True)]
+    # An axis for each core after another: all wrong models of all axes would be the largest array of any log.
+    with ThreadPoolExecutor(cpu_count()) as pool:
+        each = pool.map if len(whole) > LONG else map
+        return [_of_axes(axes) for axes in zip(*each(lambda axis: [*along(axis)], range(6)), strict=True)]
 
 
 def _of_axes(axes: Sequence[Band]) -> Band:

@@ -22,7 +22,6 @@ RADIUS: Final = 0.002  # m, of the sphere that is a point
 IMPRATIO: Final = 100.0
 MARKED: Final = 0.25  # of the angle at which a point leaves the ground: where K and C are measured
 SETTLE: Final = 12.0  # times C/K until a foot stands still
-PERIODS: Final = 3  # of the swing that C is read from, after as many that are not read
 HINGE: Final[Mapping[Axis, int]] = {"roll": 0, "pitch": 1}
 LIGHT: Final = (1.0, 5e-3)  # kg and kg·m² of the foot itself: light, the hardest case for a long step
 
@@ -64,25 +63,38 @@ def contact_attributes(point: Point, inverse_mass: float) -> dict[str, str]:
     }
 
 
-@lru_cache(maxsize=512)  # seconds for each foot, and one export's feet are mostly the next one's
-def measured(foot: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
-    """Turn a foot about one axis under a load and read K from where it stands, C from how it follows a swing.
+# One export's feet are mostly the next one's, and each takes tenths of a second.
+@lru_cache(maxsize=512)
+def standing_stiffness(foot: PointFoot, axis: Axis, load: float, step: float, share: float) -> float:
+    """K [N·m/rad] of where a foot stands under a load and a torque about one axis, either way; NaN where it falls.
 
     Args:
         foot: on points. axis: pitch or roll. load: at the bush centre [N]. step: of the simulation [s].
         share: how far it is turned, of the angle at which a point leaves the ground.
     """
     alone = _Alone(foot, step)
-    k, c = foot.turning(axis)
-    torque = share * foot.touching_angle(axis, load) * k
-    settle = max(SETTLE * c / k, 0.5)
+    torque, settle = _push(foot, axis, load, share)
     ends = [alone.turned(axis, load, sign * torque, settle) for sign in (1.0, -1.0)]
-    if not np.isfinite(ends).all():
+    return 2 * torque / (ends[0] - ends[1])
+
+
+@lru_cache(maxsize=512)
+def measured(foot: PointFoot, axis: Axis, load: float, step: float) -> Measured:
+    """K as `standing_stiffness` says and C of how the foot follows a swing, at the share `MARKED`."""
+    held = standing_stiffness(foot, axis, load, step, MARKED)
+    if not np.isfinite(held):
         return Measured(np.nan, np.nan)
-    stiffness = 2 * torque / (ends[0] - ends[1])
+    k, c = foot.turning(axis)
     rate = k / c if c > 0 else 10.0
-    response = alone.swung(axis, load, torque, rate, settle)
-    return Measured(float(stiffness), float((torque / response).imag / rate) if response else np.nan)
+    torque, settle = _push(foot, axis, load, MARKED)
+    response = _Alone(foot, step).swung(axis, load, torque, rate, settle)
+    return Measured(held, float((torque / response).imag / rate) if response else np.nan)
+
+
+def _push(foot: PointFoot, axis: Axis, load: float, share: float) -> tuple[float, float]:
+    """Torque [N·m] that turns a foot by a share of the angle at which a point leaves the ground; s until it stands."""
+    k, c = foot.turning(axis)
+    return share * foot.touching_angle(axis, load) * k, max(SETTLE * c / k, 0.5)
 
 
 class _Alone:
@@ -100,7 +112,9 @@ class _Alone:
             for p in foot.points
         )
         self.model: Any = mujoco.MjModel.from_xml_string(
-            f'<mujoco><option timestep="{step}" cone="elliptic" impratio="{IMPRATIO}" gravity="0 0 0"/>'
+            f'<mujoco><option timestep="{step}" cone="elliptic" impratio="{IMPRATIO}" gravity="0 0 0">'
+            # Spheres on one plane all touch: sorting out which takes a tenth of each step.
+            '<flag midphase="disable"/></option>'
             f'<worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 {foot.depth}"><freejoint/>'
             f'<inertial pos="0 0 0" mass="{mass}" diaginertia="{inertia} {inertia} {inertia}"/>'
             f"{points}</body></worldbody></mujoco>"
@@ -116,11 +130,11 @@ class _Alone:
         return float(tail.mean()) if still else float("nan")
 
     def swung(self, axis: Axis, load: float, torque: float, rate: float, settle: float) -> complex:
-        """Complex amplitude of the angle [rad] under torque·cos(rate·t)."""
+        """Complex amplitude of the angle [rad] under torque·cos(rate·t), from the period after it has settled."""
         period = 2 * np.pi / rate
-        times = np.arange(round((settle + PERIODS * period) / self.step)) * self.step
+        times = np.arange(round((settle + period) / self.step)) * self.step
         track = self._track(axis, load, torque * np.cos(rate * times))
-        last = times >= times[-1] - PERIODS * period
+        last = times >= times[-1] - period
         # The angle that a row of `_track` ends in belongs to the time after its step.
         late = times[last] + self.step
         basis = np.column_stack([np.cos(rate * late), -np.sin(rate * late), np.ones(late.size)])

@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import Axis
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
-from plantar.exporters.contact.alone import MARKED, Measured, measured
+from plantar.exporters.contact.alone import MARKED, Measured, measured, standing_stiffness
 from plantar.exporters.contact.points import PointFoot, points_for, sides_of
 from plantar.exporters.job import LEAST_LOAD
 
@@ -96,10 +96,10 @@ def _check(foot: PointFoot, axis: Axis, stiffness: float, damping: float, weight
     for share in (MARKED, *SHARES):
         angle = share * foot.touching_angle(axis, least)
         seen = [
-            measured(foot, axis, load, FIT_STEP, angle / foot.touching_angle(axis, load))
+            standing_stiffness(foot, axis, load, FIT_STEP, angle / foot.touching_angle(axis, load))
             for load in (least, LOADS[-1] * weight)
         ]
-        if not all(errors(one)[0] <= NEAR[0] for one in seen):
+        if not all(abs(one / stiffness - 1) <= NEAR[0] for one in seen):
             break
         held = angle
     steps = tuple(step for step, error in worst.items() if bool(np.all(error <= NEAR)))

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import GRAVITY, Array, Mask
+from plantar.errors import clock
 from plantar.faults.joints.names import legs
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
@@ -113,7 +114,7 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         angle, sure = _own_angle(stands[stretch.start, stretch.stop], joint, foot)
         if angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
             continue
-        when = f"t = {log.time[stretch.start]:g} to {log.time[stretch.stop - 1]:g} s"
+        when = f"t = {clock(log.time[stretch.start])} to {clock(log.time[stretch.stop - 1])} s"
         where = f"column 'joint.{joint}.position', {when}, value {values[stretch.start]:.6g}"
         why = f"stands still while the legs' closed chain moves it by {angle:.2g}"
         if sure:

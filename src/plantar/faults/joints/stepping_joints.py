@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
+from plantar.errors import clock
 from plantar.faults.joints.names import legs
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
@@ -38,7 +39,7 @@ def check_stepping_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding
             turned = {leg[place]: _range(log.joint(leg[place], "position"), run) for leg in others}
             same = max(turned, key=turned.__getitem__)
             if turned[same] > TURNED:
-                when = f"t = {log.time[run.start]:g} to {log.time[run.stop - 1]:g} s"
+                when = f"t = {clock(log.time[run.start])} to {clock(log.time[run.stop - 1])} s"
                 text = (
                     f"column 'joint.{joint}.position', {when}, value {position[run.start]:.6g}: stands still while its "
                     f"leg steps and '{same}' turns {turned[same]:.2g} rad; is the encoder dead? (valid: leave such "

@@ -29,9 +29,9 @@ REMEDY = {
     "torque gain": "check unit and calibration of the torque channels, and correct the logs",
     "encoders' delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the encoders' time "
     "beside the IMU's; or read both at once",
-    "joint compliance": "read encoders behind the gears, or measure how far joints bend under load: the robot file's "
-    "uncertainty: joint_compliance is what is not known of it",
-    "low-pass": "read all sensors behind the same filter, or behind one far above the motion's frequencies",
+    "joint compliance": "use encoders on the output side of the gears, or measure how far joints bend under load and "
+    "write what stays unknown into the robot file (uncertainty: joint_compliance)",
+    "low-pass": "filter all sensors alike, or with a cut-off far above the motion's frequencies",
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
@@ -42,12 +42,14 @@ REMEDY = {
     "imu turn": "add walks along curves: they show how the IMU is turned in its mount; or measure it and write it into "
     "the robot file (imu: rpy, and uncertainty: imu_mount)",
     "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
-    "slip angle": "record other motions of the same size: where an element begins to slip shows no nearer in these",
-    "hidden memory": "record larger motions, standing and swaying: spring and hysteresis are one until rubber slips",
+    "slip angle": "record other motions of the same size: these do not show more exactly at which angle the "
+    "rubber begins to slip",
+    "hidden memory": "record larger motions, standing and swaying: spring and hysteresis look the same until the "
+    "rubber slips",
     "hardening": "record larger motions, or use --model hardening: the stiffness changes with the angle",
     "softening": "load the force sensors with known torques, small and large: rubber hardens, and what seems to soften "
     "may be a sensor that bends",
-    "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
+    "model": "more logs like these will not help: the model does not fit the rubber; try --model auto or other motions",
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.

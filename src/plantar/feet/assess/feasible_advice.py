@@ -18,7 +18,7 @@ from plantar.sensors.delays.sensor_delay import SensorDelay, on_force_cells
 SHOWS_DELAY: Final = {"linear_acceleration": "accelerometer", "angular_velocity": "gyroscope"}
 LEAST_TOGETHER: Final = 30.0  # s, as long as the shift of the weight that is advised
 NO_BETTER_MODEL: Final = (
-    "more of the same will not help, and no other model of the rubber that was tried does: record other motions, "
+    "more logs like these will not help, nor does any other model of the rubber that was tried: record other motions, "
     "slower or larger ones"
 )
 

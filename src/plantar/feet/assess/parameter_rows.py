@@ -54,7 +54,7 @@ def axis_rows(
             if term == "slip_torque" and verdict == "usable" and slid_back(fit, recordings) < ROUND_SLID:
                 verdict, reason = (
                     "weak",
-                    f"the element slips one way alone: {SWAY[fit.axis]} by larger angles",
+                    f"the rubber slips one way only: {SWAY[fit.axis]} by larger angles",
                 )
         unit = fit.model.unit(term, fit.axis)
         relative = relative_std_percent(value, float(fit.white_std[place]))

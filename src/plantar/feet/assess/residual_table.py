@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pyarrow as pa
 
 from plantar.contact.phases import SUPPORTS
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.feet.recording import Recording
 from plantar.feet.regression.prediction import Prediction
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 Predictions = dict[tuple[str, str, Axis], Prediction]  # by motion, foot and axis
 
@@ -20,6 +23,8 @@ def residual_table(
 ) -> pa.Table:
     """One row a sample, foot and motion; predicted torque, and what of it is not the bush's, are NaN where nothing was
     predicted."""
+    import pyarrow as pa  # it costs start-up
+
     parts = [_one(recording, foot, predictions) for recording in recordings for foot in recording.bushes]
     return pa.concat_tables(parts)
 
@@ -27,17 +32,26 @@ def residual_table(
 def _one(
     recording: Recording, foot: str, predictions: Mapping[tuple[str, str, Axis], Prediction]
 ) -> pa.Table:
+    import pyarrow as pa
+
     bush, contact, count = recording.bushes[foot], recording.contacts[foot], len(recording.time)
+
+    def repeated(text: str) -> pa.Array:
+        return pa.DictionaryArray.from_arrays(pa.array(np.zeros(count, dtype=np.int8)), [text])
+
+    def single(values: Array) -> pa.Array:
+        return pa.array(values.astype(np.float32))
+
     columns = {
-        "motion": _repeated(recording.name, count),
-        "role": _repeated(recording.role, count),
-        "foot": _repeated(foot, count),
+        "motion": repeated(recording.name),
+        "role": repeated(recording.role),
+        "foot": repeated(foot),
         "time": pa.array(recording.time),
         "used": pa.array(contact.used),
         "support": pa.DictionaryArray.from_arrays(pa.array(contact.support), list(SUPPORTS)),
-        "force_z": _single(bush.force_z),
-        "cop_x": _single(bush.cop[:, 0]),
-        "cop_y": _single(bush.cop[:, 1]),
+        "force_z": single(bush.force_z),
+        "cop_x": single(bush.cop[:, 0]),
+        "cop_y": single(bush.cop[:, 1]),
     }
     for column, axis in enumerate(ROTATIONAL_AXES):
         predicted = predictions.get((recording.name, foot, axis))
@@ -50,11 +64,3 @@ def _one(
             nothing if predicted is None else predicted.torque - predicted.bush
         )
     return pa.table(columns)
-
-
-def _repeated(text: str, count: int) -> pa.Array:
-    return pa.DictionaryArray.from_arrays(pa.array(np.zeros(count, dtype=np.int8)), [text])
-
-
-def _single(values: Array) -> pa.Array:
-    return pa.array(values.astype(np.float32))

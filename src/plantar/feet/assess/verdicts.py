@@ -58,7 +58,7 @@ class Evidence:
             return f"{lost}, as where a sole tips whose outline (sole: polygon) is told too large"
         if self.noise > NOISY:
             share = f"{100 * self.noise:.0f} % of the slip angle"
-            return f"the angle's noise may be {share}, and an element turns by the angle itself"
+            return f"the angle's noise may be {share}, and hysteresis depends on the angle itself"
         return self.caution
 
 
@@ -144,7 +144,7 @@ def _advice_in_doubt(foot: str, axis: Axis, evidence: Evidence) -> str:
     if evidence.softened > SOFTENED:
         return f"measure the {foot} sole's outline for the robot file, or sway by smaller angles"
     if evidence.noise > NOISY:
-        return "use an attitude that wanders less: no motion makes the slip angle larger beside it"
+        return "use an attitude that wanders less: beside its errors the slip angle is small in any motion"
     return f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
 
 

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import effect_of, influences_of
+from plantar.estimation import Block, effect_of, influences_of
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
@@ -35,7 +35,7 @@ def beside_drift(
         drifts = {
             name: _halfway(fit.drifts.get(name), drift) for name, drift in _drifts(fit, recordings).items()
         }
-        if not _matters(fit, recordings, drifts):
+        if not _matters(fit, recordings, tangent_blocks(recordings, fit), drifts):
             break
         fit = again(replace(fit, drifts=drifts))
     return fit
@@ -58,9 +58,12 @@ def _drifts(fit: AxisFit, recordings: Sequence[Recording]) -> dict[str, AngleDri
     return found
 
 
-def _matters(fit: AxisFit, recordings: Sequence[Recording], drifts: Mapping[str, AngleDrift]) -> bool:
-    """Whether a number of the fit would move by a share of its deviation with other drifts."""
-    other, blocks = replace(fit, drifts=drifts), tangent_blocks(recordings, fit)
+def _matters(
+    fit: AxisFit, recordings: Sequence[Recording], blocks: Sequence[Block], drifts: Mapping[str, AngleDrift]
+) -> bool:
+    """Whether a number of the fit, whose `tangent_blocks` are given, would move by a share of its deviation with other
+    drifts."""
+    other = replace(fit, drifts=drifts)
 
     def torque(recording: Recording, one: AxisFit) -> Array:
         columns = model_columns(recording, fit.foot, fit.axis, one)

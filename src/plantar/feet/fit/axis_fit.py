@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,15 +61,30 @@ def fit_axis(
     if model is None and settings.model != AUTOMATIC:
         model = MODELS[settings.model]
     choice = None if before is None else before.choice
-    fit = _fitted(recordings, foot, axis, settings, model, place, timed, choice)
-    if fit is None:
+    found = _chosen(recordings, foot, axis, settings, model, place, timed, choice)
+    if found is None:
         return None
+    fit = found.spring
+    if found.richer is not None and found.share is not None:
+        fit = about_its_centre(fit, found.richer, found.recordings, found.share)
+    elif found.richer is not None:
+        fit = standing(fit, found.richer, found.recordings, place, shared)
     fit = about_true_zero(fit, recordings, shared)
     fit = fit if place is None else about_its_place(fit, recordings, place, shared)
     return with_best_offsets(unattenuated(fit, recordings, shared), recordings, shared)
 
 
-def _fitted(
+class _Chosen(NamedTuple):
+    """A spring and damper, and the richer model that is to take its place, if any, on the recordings that have samples;
+    where the foot steps, the `share` of each stance's offset that is its own."""
+
+    spring: AxisFit
+    richer: ModelFit | None = None
+    recordings: Sequence[Recording] = ()
+    share: float | None = None
+
+
+def _chosen(
     recordings: Sequence[Recording],
     foot: str,
     axis: Axis,
@@ -77,47 +93,43 @@ def _fitted(
     place: PlaceSpread | None,
     timed: bool,
     before: ModelChoice | None,
-) -> AxisFit | None:
+) -> _Chosen | None:
     shared = settings.offset == "shared"
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
     if not blocks:
         return None
     linear = fit_blocks(blocks, shared_offset=shared)
     if isinstance(asked, KelvinVoigt):
-        return _of_linear(foot, axis, linear, None, "asked for")
+        return _Chosen(_of_linear(foot, axis, linear, None, "asked for"))
     steps = blocks[0].stances is not None and not shared
-    share = StanceProblem.drawn_together(blocks).own_share if steps else 0.0
+    share = StanceProblem.drawn_together(blocks).own_share if steps else None
     fitted = [recording for recording in recordings if recording.name in linear.offsets]
-    data_sets = [data_set_of(each, foot, axis, share) for each in fitted]
+    data_sets = [data_set_of(each, foot, axis, share or 0.0) for each in fitted]
     if asked is None:
         explained = _explained(linear, blocks)
         small = not steps and may_hide_a_memory([data_set.motion for data_set in data_sets])
         if explained <= LEAST_EXPLAINED or (explained >= FULLY_EXPLAINED and not small):
-            return _of_linear(foot, axis, linear, None, _untried(explained))
+            return _Chosen(_of_linear(foot, axis, linear, None, _untried(explained)))
     placed = _of_linear(foot, axis, linear, None, "")
     if place is not None and not steps:
         placed = _where_a_spring_turns(placed, fitted, place, shared)
         data_sets = data_sets_about(fitted, placed)
     cutoff = fitted[0].cutoff
-
-    def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
-        spring = _of_linear(foot, axis, linear, choice, reason)
-        if steps:
-            return about_its_centre(spring, fit, fitted, share)
-        return standing(placed_as(spring, placed), fit, fitted, place, shared)
-
     if asked is not None:
-        return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
-    names = CANDIDATES_IN_STANCES if steps else CANDIDATES
-    # In short stances a late sensor always looks like one: there it would tell nothing of what it may hide.
-    memory = timed if steps else _remembers(data_sets)
-    models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
-    gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
-    choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain, before=before)
-    choice = cautioned(choice, timed=timed, steps=steps, torn=not (steps or memory))
-    if choice.fit.model.name == KelvinVoigt.name:
-        return _of_linear(foot, axis, linear, choice, choice.reason)
-    return found(choice.fit, choice, choice.reason)
+        fit = fit_model(asked, data_sets, cutoff, shared_offset=shared)
+        spring = _of_linear(foot, axis, linear, None, "asked for")
+    else:
+        names = CANDIDATES_IN_STANCES if steps else CANDIDATES
+        # In short stances a late sensor always looks like one: there it would tell nothing of what it may hide.
+        memory = timed if steps else _remembers(data_sets)
+        models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
+        gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
+        choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain, before=before)
+        choice = cautioned(choice, timed=timed, steps=steps, torn=not (steps or memory))
+        fit, spring = choice.fit, _of_linear(foot, axis, linear, choice, choice.reason)
+        if fit.model.name == KelvinVoigt.name:
+            return _Chosen(spring)
+    return _Chosen(spring if steps else placed_as(spring, placed), fit, fitted, share)
 
 
 def _where_a_spring_turns(

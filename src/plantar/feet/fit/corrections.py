@@ -72,7 +72,7 @@ def unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) ->
     taken, size = attenuation(blocks, fit.values, shared_offset=shared), len(fit.values)
     where = f"{fit.foot} {fit.axis}"
     if taken is None:
-        text = f"{where}: angles and rates are mostly noise; stiffness and damping come out too small by any factor"
+        text = f"{where}: angles and rates are mostly noise; stiffness and damping may be too small by any factor"
         return replace(fit, notes=(*fit.notes, Note("noisy_regressors", "warning", text)))
     if np.all(np.abs(taken) < np.maximum(NEGLIGIBLE * fit.std[:size], TINY * np.abs(fit.values))):
         return fit

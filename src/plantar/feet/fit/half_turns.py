@@ -21,8 +21,8 @@ from plantar.feet.regression.model_columns import path_of
 ROUND = 2.0  # slip angles from one end of a path to the other
 STILL = 1e-6  # slip angles from sample to sample: rounding
 HARDLY_TURNED = (
-    "stances bend the foot by {:.1f} slip angles from end to end, and only two turn the element round: stiffness and "
-    "slip torque take from each other (record longer steps, or stand and sway)"
+    "stances bend the foot by {:.1f} slip angles from end to end, where a full loop of hysteresis needs two: stiffness "
+    "and slip torque can hardly be told apart (record longer steps, or stand and sway)"
 )
 
 

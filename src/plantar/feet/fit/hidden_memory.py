@@ -27,8 +27,8 @@ UNTIMED = (
     "stiffness is smaller"
 )
 TORN = (
-    "gaps in the logs leave hysteresis no time to show, and it counts as stiffness; with hysteresis the stiffness is "
-    "smaller (record logs without gaps)"
+    "the stretches between gaps are too short for hysteresis to show, and it counts as stiffness, which is smaller "
+    "without it (record logs without gaps)"
 )
 UNBELIEVED = "the sensors' delays are not known, and a delay looks like it"
 

@@ -65,12 +65,10 @@ def in_place_of(fit: AxisFit, simpler: AxisFit) -> AxisFit:
         changes = 100 * np.abs(fit.numbers[:2] / simpler.numbers[:2] - 1)
         reason = (
             f"{fit.model.name} changes stiffness by {changes[0]:.2g} % and damping by {changes[1]:.2g} % only, "
-            "less than they are unsure"
+            "less than their uncertainty"
         )
     else:
-        reason = (
-            f"what {fit.model.name} adds cannot be told from zero beside what robot and sensors may be off by"
-        )
+        reason = f"what {fit.model.name} adds is no more than errors of robot file and sensors may make"
     choice = fit.choice and replace(
         fit.choice,
         ranking=tuple(

@@ -14,7 +14,8 @@ import numpy as np
 
 from plantar.contact.deflection import foot_motions
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.dynamics import Contact, equation_of
+from plantar.dynamics import Contact
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.motion import Motion
 from plantar.estimation import Block, effect_of, influences_of
 from plantar.feet.interval_width.cause import Cause

@@ -88,7 +88,7 @@ def misread_joint_notes(
         return []
     alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
-        f"{wide.foot} {wide.axis}: the torque follows the angle far better with what was read otherwise: "
+        f"{wide.foot} {wide.axis}: the torque follows the angle far better if one error of measurement is taken off: "
         f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders without play, whose angles are the "
         "links', all read at one moment; a stiff mount of the IMU)"
     )

@@ -96,7 +96,12 @@ def tangent_blocks(recordings: Sequence[Recording], fit: AxisFit, *, drift: bool
     blocks = blocks_of(recordings, fit.foot, fit.axis, drift=drift, fit=fit)
     if len(fit.shape) == 0 or blocks[0].stances is not None:
         return blocks
-    return all_beside(blocks, [_shape_slopes(one, fit) for one in recordings_of(blocks, recordings)])
+    steps, slopes = SHAPE_STEP * fit.shape, list[Array]()
+    shapes = np.concatenate([fit.shape + np.diag(steps), fit.shape - np.diag(steps)])
+    for one in recordings_of(blocks, recordings):  # the states at the start held
+        torque = own_torque(one, fit, [memory_path(one, fit)], shapes)[one.rows(fit.foot)]
+        slopes.append((torque[:, : len(steps)] - torque[:, len(steps) :]) / (2 * steps))
+    return all_beside(blocks, slopes)
 
 
 def recordings_of(blocks: Sequence[Block], recordings: Sequence[Recording]) -> list[Recording]:
@@ -114,14 +119,6 @@ def beside(block: Block, columns: Array) -> Block:
     """The block with more columns (n, m) in its regressor, without noise."""
     noise = None if block.noise is None else np.append(block.noise, np.zeros(columns.shape[1]))
     return replace(block, regressor=np.column_stack([block.regressor, columns]), noise=noise)
-
-
-def _shape_slopes(recording: Recording, fit: AxisFit) -> Array:
-    """Change of the torque with each nonlinear parameter at the used samples, (n, s), the states at the start held."""
-    steps = SHAPE_STEP * np.diag(fit.shape)
-    shapes = np.concatenate([fit.shape + steps, fit.shape - steps])
-    torque = own_torque(recording, fit, [memory_path(recording, fit)], shapes)[recording.rows(fit.foot)]
-    return np.asarray((torque[:, : len(steps)] - torque[:, len(steps) :]) / (2 * np.diag(steps)))
 
 
 def _taken_off(recording: Recording, fit: AxisFit | None) -> Array | float:

@@ -75,13 +75,16 @@ def open_log(
         robot = load_robot(robot)
     if not os.path.exists(path):
         raise LogError("does not exist", path=path)
+    path = path if path.name not in ("", "..") else path.resolve()  # '.' is a bag's folder as well
+    if str(path).encode(errors="replace").decode() != str(path):  # results name it, and are text
+        raise LogError("has a name that is no text", path=ascii(str(path)), valid="a name in UTF-8")
     if path.is_file() and path.stat().st_size == 0:
         raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
         log = reader(path, robot, ReadLimit(path, memory, longest=longest))
-    return of_robot(log, robot)
+    return of_robot(log.without_empty_joints(), robot)
 
 
 def of_robot(log: MotionLog, robot: RobotModel | None) -> MotionLog:

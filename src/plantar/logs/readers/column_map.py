@@ -63,6 +63,14 @@ def joint_order(robot: RobotModel | None) -> tuple[str, ...] | None:
         return None
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise LogError("columns.joints is not a list of joint names", path=robot.path)
+    return _once(names, "columns.joints", robot.path)
+
+
+def _once(names: Sequence[str], where: str, path: Path) -> tuple[str, ...]:
+    """A joint that is named twice would be read from the second place, and the one meant there from none."""
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise LogError(f"{where} names a joint twice", path=path, value=twice, valid="each joint once")
     return tuple(names)
 
 
@@ -99,7 +107,8 @@ def _port(entry: object, where: str, path: Path) -> Port:
         raise LogError(f"{where}.take", path=path, value=str(take), valid="[first, after the last]")
     sign = _sign(made.get("sign", 1), where, path)
     slot = None if take is None else (int(take[0]), int(take[1]))
-    return Port(made["role"], made.get("unit"), sign, None if joints is None else tuple(joints), slot)
+    named = None if joints is None else _once(joints, f"{where}.joints", path)
+    return Port(made["role"], made.get("unit"), sign, named, slot)
 
 
 def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Array, dict[str, Array]]:
@@ -165,7 +174,8 @@ def _mapped(
     stem, _, last = key.rpartition(".")
     if last == "orientation" and stem.startswith("imu."):
         if order == "rpy" and values.shape[1] == 3:
-            values, order = quaternion_from_rpy(values * factor(unit, "position", key, path)), "wxyz"
+            scale = sign * factor(unit, "position", key, path)
+            values, order = quaternion_from_rpy(scale * values), "wxyz"
         if values.shape[1] != 4 or (order or "wxyz") not in ORDERS:
             message = f"columns.{key} needs four sources and an order"
             raise LogError(message, path=path, value=order, valid="wxyz, xyzw, or three and rpy")
@@ -197,7 +207,10 @@ def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Ar
         return table[names[source]]
     if not isinstance(source, str) or source not in table:
         raise LogError(
-            f"is missing (columns.{key})", path=path, column=str(source), valid=nearest(str(source), names)
+            f"is missing, or holds a text or nothing (columns.{key})",
+            path=path,
+            column=str(source),
+            valid=f"numbers in one of {nearest(str(source), names)}",
         )
     return table[source]
 

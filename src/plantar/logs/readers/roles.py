@@ -68,7 +68,8 @@ def role_columns(
         stem = role.rpartition(".")[0]
         if last == "rpy":
             _length(values, 3, role, path)
-            values, last = quaternion_from_rpy(values * factor(unit, "position", role, path)), "wxyz"
+            scale = sign * factor(unit, "position", role, path)
+            values, last = quaternion_from_rpy(scale * values), "wxyz"
         _length(values, 4, role, path)
         return {f"{stem}.{axis}": values[:, i] for i, axis in enumerate(last)}
     if kind in ("imu", "wrench") and last in ("angular_velocity", "linear_acceleration", "force", "torque"):
@@ -77,6 +78,11 @@ def role_columns(
         return {f"{role}.{axis}": scale * values[:, i] for i, axis in enumerate("xyz")}
     if kind == "wrench" and rest:
         _length(values, 6, role, path)
+        if unit is not None:
+            valid = "each half by itself: {role: wrench.<name>.force, unit: kN, take: [0, 3]}, and torque likewise"
+            raise LogError(
+                f"{role}: force and torque have no unit in common", path=path, value=unit, valid=valid
+            )
         stem, halves = role.removesuffix(".torque_first"), (values[:, :3], values[:, 3:])
         force, torque = halves[::-1] if last == "torque_first" else halves
         columns = {f"{stem}.force.{axis}": sign * force[:, i] for i, axis in enumerate("xyz")}

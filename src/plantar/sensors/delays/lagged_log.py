@@ -6,7 +6,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from plantar.conventions import FORCE, GRAVITY, Array
-from plantar.dynamics import Contact, equation_of, model_parameters
+from plantar.dynamics import Contact, model_parameters
+from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
@@ -46,17 +47,18 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     equation, parameters = equation_of(robot.floating_model), model_parameters(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
-    predicted, measured = [], []
+    predicted, measured = np.empty((len(lags), *late.shape[2:])), np.empty((len(lags), *late.shape))
     # One motion after the other: all of them at once would be the largest array of any log.
-    for motion in (inertial_motion(robot, equation, signals, inner, encoders_late=late) for late in lags):
+    for place, by in enumerate(lags):
+        motion = inertial_motion(robot, equation, signals, inner, encoders_late=by)
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
-        measured.append(_moving(carried, thin.period))
-        predicted.append(_moving(equation.base_wrenches(motion, parameters[None])[0], thin.period))
+        measured[place] = _moving(carried, thin.period)
+        predicted[place] = _moving(equation.base_wrenches(motion, parameters[None])[0], thin.period)
     together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
     if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
         return None
-    return LagGrid(np.array(predicted), np.array(measured), lags, lags, thin.period)
+    return LagGrid(predicted, measured, lags, lags, thin.period)
 
 
 def _liveliest(force: Array, inner: slice, most: int) -> slice:

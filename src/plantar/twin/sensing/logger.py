@@ -16,6 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
 from plantar.files import write_text
+from plantar.logs.motion_log import device_of
 from plantar.robot.model import Imu, Placement, RobotModel
 from plantar.twin.sensing.exact import Columns, labelled
 from plantar.twin.simulation.rollout import Rollout
@@ -87,5 +88,4 @@ def write_robot(robot: RobotModel, path: Path, attitude_of_base: bool) -> Path:
 
 def _device(column: str) -> str:
     """What samples a column: all joints together, the attitude, or one foot's sensor."""
-    kind, name = column.split(".")[:2]
-    return kind if kind == "joint" else f"{kind}.{name}"
+    return "joint" if column.startswith("joint.") else device_of(column)

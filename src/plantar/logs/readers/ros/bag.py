@@ -22,12 +22,14 @@ from plantar.logs.readers.ros.sensor_topics import assign
 from plantar.logs.readers.ros.sqlite_bag import read_sqlite
 from plantar.logs.readers.ros.topics import Series, Topic
 from plantar.logs.readers.streams import Stream, merge
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 FILES = (".mcap", ".db3", ".bag", ".active")  # .bag.active: a ROS 1 bag that was never closed
+METADATA = "metadata.yaml"  # that ROS 2 writes beside the parts of one bag
+CLOCKS_APART = 0.1  # s: messages within a robot are received sooner
 NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
 
 
@@ -53,7 +55,12 @@ def bag_topics(path: Path) -> dict[str, list[Topic]]:
 
 def _topics(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Topic]:
     topics: dict[str, Topic] = {}
-    for file in bag_files(path):
+    files = bag_files(path)
+    if len(files) > 1 and not (path / METADATA).exists():
+        names = listing([file.name for file in files])
+        text = f"{path.name}: a folder without {METADATA}; its {len(files)} files are read as one recording: {names}"
+        notes.append(Note("bags_joined", "warning", f"{text} (valid: one by one, if each is its own)"))
+    for file in files:
         reader = {".mcap": read_mcap, ".db3": read_sqlite}.get(file.suffix.lower(), read_ros1)
         reader(file, topics, limit, notes)
     return topics
@@ -89,6 +96,8 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
     if received := reason is not None:
         text = f"{path.name}: {reason}; times of receipt are used instead"
         notes.append(Note("receive_time", "warning", text))
+    elif (apart := _clocks_apart(sources)) is not None:
+        notes.append(Note("clocks_apart", "warning", f"{path.name}: {apart}"))
     first = min(int(series.clock(received).min()) for _, series in sources)
     zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
     if zero:
@@ -120,6 +129,21 @@ def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: 
         late = names[int(np.argmax([int(s.min()) for s in headers]))]
         return f"the header stamps of {late} do not overlap the others'"
     return None
+
+
+def _clocks_apart(sources: list[tuple[Topic, Series]]) -> str | None:
+    """What to say of header stamps of which some are much older when they are received than others."""
+    age = {
+        topic.name: 1e-9 * float(np.median(series.clock(received=True) - series.clock(received=False)))
+        for topic, series in sources
+    }
+    old, new = max(age, key=age.__getitem__), min(age, key=age.__getitem__)
+    if age[old] - age[new] < CLOCKS_APART:
+        return None
+    return (
+        f"the header stamps of {old} are {age[old] - age[new]:.3g} s older at their receipt than those of {new}: "
+        "clocks that differ make the sensors late by as much (valid: all computers on one clock)"
+    )
 
 
 def _sensor(key: str, topic: Topic, seen: set[str]) -> Iterator[tuple[Messages, dict[str, Array]]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,7 @@ def read_parquet(
             kept = None if rows is None else int(np.count_nonzero(rows))
             limit.numbers(source.metadata.num_rows, len(numeric), kept)
             _check_unpacked(path, source.metadata, numeric, limit)
-            return _columns(source, numeric, path, rows)
+            return _columns(path, source.metadata, numeric, rows)
     except (pa.ArrowException, OSError, UnicodeDecodeError, BrokenPage) as error:
         reason = str(error).splitlines()[0]
         if TOO_MANY in reason:
@@ -86,27 +87,33 @@ def _check_unpacked(
 
 
 def _columns(
-    source: pa_parquet.ParquetFile, names: list[str], path: Path, kept: Mask | None
+    path: Path, metadata: pa_parquet.FileMetaData, names: list[str], kept: Mask | None
 ) -> dict[str, Array]:
     """A column for each core after another: pages of all at once would take as much memory as their numbers."""
-    rows, together = source.metadata.num_rows, pa.cpu_count()
+    rows, together = metadata.num_rows, pa.cpu_count()
     if kept is not None and len(kept) != rows:
         raise LogError(
             f"had {len(kept)} rows a moment ago and has {rows} now", path=path, valid="a file that is closed"
         )
     values = np.empty((len(names), rows if kept is None else np.count_nonzero(kept)))
-    for first in range(0, len(names), together):
-        some = names[first : first + together]
-        count = place = 0
-        for batch in source.iter_batches(BATCH, columns=some):
-            end = count + batch.num_rows
-            if end > rows:
-                break
-            for row, name in zip(values[first:], some, strict=False):
-                numbers = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
-                numbers = numbers if kept is None else numbers[kept[count:end]]
-                row[place : place + len(numbers)] = numbers
-            count, place = end, place + len(numbers)
-        if count != rows:
-            raise LogError(f"does not hold the {rows} rows that the file claims", path=path, column=some[0])
+
+    def fill(first: int) -> None:
+        with pa_parquet.ParquetFile(path, metadata=metadata, pre_buffer=False, buffer_size=BUFFER) as source:
+            for row, name in zip(values[first::together], names[first::together], strict=True):
+                count = place = 0
+                for batch in source.iter_batches(BATCH, columns=[name], use_threads=False):
+                    end = count + batch.num_rows
+                    if end > rows:
+                        break
+                    # Not safely: nanoseconds since 1970 are more than a float64 tells apart, and near enough.
+                    numbers = batch.column(name).cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+                    numbers = numbers if kept is None else numbers[kept[count:end]]
+                    row[place : place + len(numbers)] = numbers
+                    count, place = end, place + len(numbers)
+                if count != rows:
+                    message = f"does not hold the {rows} rows that the file claims"
+                    raise LogError(message, path=path, column=name)
+
+    with ThreadPoolExecutor(together) as pool:
+        list(pool.map(fill, range(together)))
     return dict(zip(names, values, strict=True))

@@ -41,9 +41,10 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     time = columns.pop("time")
     if not time.size:
         raise LogError("holds no samples", path=path, valid="a header and one row a sample")
-    ignored = [name for name in header if name not in columns and name != "time"]
+    plain = dict.fromkeys(name.rstrip("\0") for name in header)
+    ignored = [name or "one without a name" for name in plain if name not in columns and name != "time"]
     if ignored:
-        names = listing([name or "one without a name" for name in ignored], 6)
+        names = listing(ignored, 6)
         text = f"{path.name}: columns of no known name, not used: {names}"
         notes.append(Note("columns_ignored", "info", text))
     if stretches is not None:
@@ -107,13 +108,14 @@ def _columns(
 
 
 def _known(names: Sequence[str], path: Path) -> list[str]:
-    """The names that mean something. LogError: one stands twice, or time is missing."""
-    seen: set[str] = set()
-    for name in names:
-        if name.endswith("\0") or name in seen:
-            raise LogError("stands twice in the header", path=path, column=name.rstrip("\0"))
-        seen.add(name)
-    if "time" not in seen:
+    """The names that mean something. LogError: one of them stands twice, or time is missing."""
+    known: dict[str, None] = {}
+    for name in (name.rstrip("\0") for name in names):
+        if name in known:
+            raise LogError("stands twice in the header", path=path, column=name)
+        if name == "time" or COLUMN.fullmatch(name):
+            known[name] = None
+    if "time" not in known:
         begin = names[0] if names else ""
         valid = (
             "a first column 'time' [s]; or `columns` in the robot file, for `plantar init` as --columns FILE"
@@ -124,7 +126,7 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
             )
         message = f"is missing: the header begins with '{begin[:40]}'"
         raise LogError(message, path=path, column="time", valid=valid)
-    return [name for name in names if name == "time" or COLUMN.fullmatch(name)]
+    return list(known)
 
 
 def _increasing(time: Array, path: Path, notes: list[Note]) -> Mask:
