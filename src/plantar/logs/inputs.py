@@ -178,19 +178,18 @@ def check_names(logs: Sequence[MotionLog]) -> None:
 
 
 def _same_recording(log: MotionLog, other: MotionLog) -> bool:
-    """Whether most of the shorter log's samples are samples of the longer one: as they are, cut, thinned, on another
-    clock or without some of the columns."""
+    """Whether most of the shorter log's samples are samples of the longer one, which has the same columns: as they are,
+    cut, thinned, or on another clock."""
     short, long = sorted((log, other), key=len)
-    common = sorted(short.columns.keys() & long.columns.keys())
-    if not common or not len(short):
+    if not short.columns or not len(short) or short.columns.keys() != long.columns.keys():
         return False
     probes = np.linspace(0, len(short) - 1, PROBES).astype(int)
-    told = {name: short.columns[name][probes] for name in common}
-    finest = max(common, key=lambda name: len(np.unique(told[name])))
+    told = {name: values[probes] for name, values in short.columns.items()}
+    finest = max(told, key=lambda name: len(np.unique(told[name])))
     alike = np.isin(long.columns[finest], np.unique(told[finest]))
     asked, there = (
         {row.tobytes() for row in np.column_stack(columns)}
-        for columns in (list(told.values()), [long.columns[name][alike] for name in common])
+        for columns in (list(told.values()), [long.columns[name][alike] for name in told])
     )
     # Noise-free logs may rest alike: that is one sample of all.
     return len(asked & there) > max(1, len(asked) / 2)
