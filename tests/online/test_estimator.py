@@ -199,7 +199,7 @@ def test_a_batch_results_hysteresis_and_delay_are_used(robot: RobotModel) -> Non
     said = [row for row in plain.parameters if (row.foot, row.axis) == ("left", "pitch")]
     assert said
     assert all(row.verdict != "usable" for row in said)
-    assert all("memory" in row.reason for row in said)
+    assert all("hysteresis" in row.reason for row in said)
     assert not replay.estimate("left").flags & Flag.PITCH_MEMORY
 
 
