@@ -78,6 +78,19 @@ def test_inspect(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["logs"][0]["name"] == "first"
 
 
+def test_inspect_shows_the_logs_beside_those_that_cannot_be_read(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cut, empty = tmp_path / "cut.csv", tmp_path / "empty.csv"
+    cut.write_text("time,joint.a.position\n0,1\n0.1,x\n")
+    empty.touch()
+    assert run("inspect", campaign / "robot.yaml", cut, campaign / "first.csv", empty, "--json") == 1
+    out, error = capsys.readouterr()
+    assert [log["name"] for log in json.loads(out)["logs"]] == ["first"]
+    assert "cut.csv" in error
+    assert "empty.csv: is empty" in " ".join(error.split())
+
+
 def test_inspect_says_1_where_a_log_cannot_serve(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -21,6 +21,7 @@ from plantar.cli.console.terminal import (
     progress,
     table,
 )
+from plantar.errors import LogError
 from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
 from plantar.notes import Note
@@ -45,10 +46,15 @@ def run(
     """
     step = progress(quiet)
     loaded = load_robot(robot)
-    summaries = []
+    summaries, unread = list[LogSummary](), list[LogError]()
     for path in logs:
         step(f"inspect {path.name}")
-        summaries.append(inspect_log(loaded, open_log(path, loaded, memory=memory)))
+        try:
+            log = open_log(path, loaded, memory=memory)
+        except LogError as error:  # says nothing of the other logs
+            unread.append(error)
+            continue
+        summaries.append(inspect_log(loaded, log))
     end_progress(quiet)
     if json:
         print(
@@ -58,6 +64,8 @@ def run(
     elif not quiet:
         for summary in summaries:
             _print(console(), summary, columns, "URDF" if loaded.weighed is None else "robot, as weighed,")
+    if unread:
+        raise unread[0] if len(unread) == 1 else LogError("; ".join(map(str, unread)))
     if any(finding.fatal for summary in summaries for finding in summary.findings):
         raise typer.Exit(1)
 
