@@ -1,22 +1,14 @@
-"""What a motion tells of the bushes, beside plain least squares; limits, beside their definition."""
+"""What a motion tells of the bushes, beside plain least squares."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from copy import copy
-from unittest.mock import patch
-
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 
 import design_samples
-from plantar import cores
-from plantar.contact.polygon import inside_distance
 from plantar.conventions import NORMAL95
 from plantar.design import information as objective
-from plantar.design import search
-from plantar.design.family import CHANNELS, Lines
+from plantar.design.family import CHANNELS
 from plantar.design.information import (
     Criterion,
     badness,
@@ -25,31 +17,19 @@ from plantar.design.information import (
     information,
     vertical_half_width,
 )
-from plantar.design.reach import (
-    KINDS,
-    Reach,
-    margin_kept,
-)
 from plantar.design.rubber import (
     SHARE,
     remembered,
 )
-from plantar.design.search import best_motion, better_motion
-from plantar.design.soft_feet import Softness
-from plantar.twin.presets import SLIP_TORQUE
-from plantar.twin.robots import hrp2
 
 MISSED = 0.1
 UNCLOSED = np.array([0.4, 0.2, 0.2])
 MODEL_ERROR = 0.003
-BEND = 0.1
-LIFT = 0.35
 RATE = 20.0
 NEARBY = 1.05
 SECANT = 0.6
 SLIP_ANGLE = 0.01
 DRIFT_PERIOD = 20.0
-SIDES = 8
 
 
 def test_an_element_slips_as_its_definition_says() -> None:
@@ -205,166 +185,3 @@ def test_vertical_compliance_shows_where_load_goes_from_foot_to_foot() -> None:
     for channel in ("centre.y", "trunk.roll", "left.roll", "right.roll", "left.pitch", "right.pitch"):
         middle[CHANNELS.index(channel)] = 0.0
     assert (vertical_half_width(reach, middle.ravel()) > 20 * whole).all()
-
-
-def test_the_motion_found_is_at_its_limits_and_not_beyond() -> None:
-    reach, coefficients = design_samples.reach(), design_samples.coefficients()
-    assert reach.used(coefficients) == pytest.approx(1.0, abs=0.02)
-    coefficients = coefficients / reach.used(coefficients)
-    bent, load = reach.of(reach.deflection, coefficients), reach.of(reach.load, coefficients)
-    rate = reach.of(reach.rate, coefficients)
-    assert np.abs(bent).max() < 1.02 * BEND
-    for place, foot in enumerate(reach.feet):
-        polygon = hrp2.robot().feet[foot].sole.polygon  # the bush is over its middle
-        for row, (k, c) in enumerate(zip(reach.stiffness, reach.damping, strict=True)):
-            one = bent[row, place]
-            slips = remembered(one, [SLIP_ANGLE])[:, 0]
-            torque = (
-                k * one + c * rate[row, place] + design_samples.STIFFNESS * np.array(SHARE)[:, None] * slips
-            )
-            pressure = np.column_stack([-torque[0], torque[1]]) / (reach.weight + load[row, place])[:, None]
-            assert inside_distance(pressure, polygon).min() > margin_kept(polygon) - 2e-3
-
-
-def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
-    """On other frequencies, too: the best of all beginnings, each of which has its own."""
-
-    def found(seed: int) -> tuple[int, Lines, np.ndarray]:
-        with patch.object(search, "TRIES", 1), patch.object(search, "STARTS", 2):
-            return best_motion([reach_on], 20.0, "A", seed)
-
-    def reach_on(lines: Lines) -> Reach:
-        reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
-        tried.append(lines.frequencies)
-        return reach
-
-    told, tried = design_samples.told(), list[np.ndarray]()
-    with patch.object(cores, "usable_cores", lambda: 1):
-        _, lines, motion = found(2)
-        assert np.array_equal(motion, found(2)[2])
-        own, others = tried[:2]
-        assert not np.array_equal(own, others)
-        assert any(np.array_equal(lines.frequencies, each) for each in (own, others))
-        assert not np.array_equal(lines.frequencies, found(3)[1].frequencies)
-
-
-def test_beginnings_take_the_stances_in_turn_and_the_best_one_stands_as_its_own_did() -> None:
-    def reach_of(stance: int) -> Callable[[Lines], Reach]:
-        def reach_on(lines: Lines) -> Reach:
-            reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
-            stances.append((stance, lines.frequencies))
-            return reach.held(np.full((1, len(KINDS)), 1.0 if stance == 1 else 0.1))
-
-        return reach_on
-
-    told, stances = design_samples.told(), list[tuple[int, np.ndarray]]()
-    with (
-        patch.object(cores, "usable_cores", lambda: 1),
-        patch.object(search, "TRIES", 1),
-        patch.object(search, "STARTS", 4),
-    ):
-        stance, lines, _ = best_motion([reach_of(0), reach_of(1)], 20.0, "A", 2)
-    assert [each for each, _ in stances] == [0, 1, 0, 1]
-    assert stance == 1, "whose limits are wider"
-    assert any(np.array_equal(lines.frequencies, own) for each, own in stances if each == 1)
-
-
-def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
-    """Of a robot of this weight, however soft its springs were told: limits would be passed in rehearsals."""
-    lines = Lines.drawn(20.0, np.random.default_rng(1))
-    soft = Softness.told(hrp2.robot(), 300.0, None)
-    found = Reach(design_samples.legs(), design_samples.linear(), lines, soft, [soft]).element
-    assert found == pytest.approx(np.array(SLIP_TORQUE) / SLIP_ANGLE)
-    stiff = Softness.told(hrp2.robot(), 800.0, None)
-    more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff]).element
-    assert more == pytest.approx(800.0 * np.array(SHARE))
-
-
-def test_limits_are_held_to_shares_of_each_kind_over_each_bush() -> None:
-    """Where motions may use half of one kind over one bush, they seem to use twice as much of it there."""
-    reach, coefficients = design_samples.reach(), design_samples.coefficients()
-    whole, shares = reach.used_by_kind(coefficients), np.ones((3, len(KINDS)))
-    load, bent = reach.of(reach.load, coefficients), reach.of(reach.deflection, coefficients)
-    assert whole[:, KINDS.index("load")] == pytest.approx(
-        -load.min(axis=(1, 2)) / ((1 - LIFT) * reach.weight)
-    )
-    assert whole[:, KINDS.index("bend")] == pytest.approx(np.abs(bent).max(axis=(1, 2, 3)) / BEND)
-    for place in np.ndindex(shares.shape):
-        less, expected = shares.copy(), whole.copy()
-        less[place], expected[place] = 0.5, 2 * whole[place]
-        assert reach.held(less).used_by_kind(coefficients) == pytest.approx(expected)
-    assert reach.held(0.5 * shares, 0.5).used(coefficients) == pytest.approx(2 * reach.used(coefficients))
-    still = reach.held(shares, still=("arms",))
-    assert still.used(coefficients) > 1e6
-    without = reach.lines.without(coefficients, "arms")
-    assert still.used(without) == pytest.approx(reach.used(without))
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_feet_are_beyond_their_limits_where_a_centre_of_pressure_is(sign: float) -> None:
-    """Whichever way the motion goes: soles are longer in front than behind."""
-    reach, inside = design_samples.reach(), []
-    of_feet, feet = copy(reach), reach.deflection[0, ..., 0].size + reach.load[0, ..., 0].size
-    floor = len(reach.feet) * len(reach.bushes) * SIDES  # friction has a test of its own
-    feet += floor + len(reach.bushes) * sum(len(room) for _, room in reach._edges)
-    of_feet._low, of_feet._high = reach._low.copy(), reach._high.copy()
-    of_feet._high[-floor:] = np.inf
-    of_feet._low[:-feet], of_feet._high[:-feet] = np.inf, np.inf
-    shape = sign * design_samples.coefficients()
-    for size in np.linspace(0.3, 2.0, 36):  # not 1: a designed motion stands at a limit there
-        bent, load = reach.of(reach.deflection, size * shape), reach.of(reach.load, size * shape)
-        rate = reach.of(reach.rate, size * shape)
-        slips = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
-        torque = reach.stiffness[:, None, None, None] * bent + reach.damping[:, None, None, None] * rate
-        torque += reach.element[:, None] * slips
-        free = np.abs(bent).max() < BEND
-        for place, (normals, room) in enumerate(reach._edges):
-            carried = reach.weight + load[:, place]
-            pressure = np.stack([-torque[:, place, 0], torque[:, place, 1]]) / carried
-            free &= bool((np.einsum("ek,ksn->esn", normals, pressure) + room[:, None, None] > 0).all())
-        free &= bool((-load.min() / reach.weight) < 1 - LIFT)
-        inside.append(free)
-        assert (of_feet.used(size * shape) <= 1.0) == free, size
-    assert any(inside)
-    assert not all(inside)
-
-
-def test_joints_have_their_own_room_to_each_side() -> None:
-    reach, shape = copy(design_samples.reach()), design_samples.coefficients()
-    gain = design_samples.linear().joints[:, 6:]
-    moved = gain[:, np.abs(gain).max(axis=0) > 1e-9].T @ reach.lines.displacements(shape, reach.time)
-    rows = slice(len(CHANNELS), len(CHANNELS) + len(moved))
-    for side, most in (("_low", -moved.min(axis=1)), ("_high", moved.max(axis=1))):
-        reach._low, reach._high = (np.full_like(reach._low, np.inf) for _ in range(2))
-        getattr(reach, side)[rows] = 1e-3
-        assert reach.used(shape) == pytest.approx(most.max() / 1e-3)
-
-
-def test_near_its_limits_a_motion_has_room_as_told() -> None:
-    """Of springs alone all is linear: what is left of each limit after a small step is what the rows say."""
-    reach, shape = copy(design_samples.reach()), design_samples.coefficients()
-    reach.element = 0 * reach.element
-    rows, left = reach.near(shape)
-    assert left.min() == pytest.approx(1 - reach.used(shape))
-    assert left.max() < 0.2, "only what is near"
-    passed, over = reach.near(1.5 * shape, 1.0)
-    assert len(passed) > 0
-    assert over.max() < 0.0, "only what is passed"
-    assert rows @ shape == pytest.approx(1 - left)
-
-
-def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> None:
-    """Of what is linear a linear program over all samples knows the optimum."""
-    reach = copy(design_samples.reach())
-    reach.element = 0 * reach.element
-    units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
-    slope = np.random.default_rng(3).standard_normal(units.size) / units
-    with patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope):
-        found = better_motion(reach, "widest", 0.1 * units)  # every beginning leads there
-    rows = reach._watched.reshape(reach.lines.size, -1).T
-    high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))
-    shares = np.vstack([rows / high[:, None], -rows / low[:, None]])
-    close = shares[shares @ found > 0.5]  # the optimum of these alone is no worse than that of all
-    best = linprog(slope * units, A_ub=close * units, b_ub=np.ones(len(close)), bounds=(-9, 9)).fun
-    assert reach.used(found) <= 1 + 1e-9
-    assert slope @ found == pytest.approx(best, rel=0.02)

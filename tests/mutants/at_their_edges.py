@@ -242,6 +242,6 @@ AT_THEIR_EDGES = (
         "the room below a joint's angle for that above",
         "return [(gain @ self._basis, down, up)",
         "return [(gain @ self._basis, up, up)",
-        ("design/test_information.py",),
+        ("design/test_reach.py",),
     ),
 )

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from mutant import Mutant
 
-QUICK = ("design/test_soft_feet.py", "design/test_information.py", "design/test_family.py")
+QUICK = (
+    "design/test_soft_feet.py",
+    "design/test_information.py",
+    "design/test_search.py",
+    "design/test_reach.py",
+    "design/test_family.py",
+)
 
 DESIGNED_MOTIONS = (
     Mutant(

@@ -14,46 +14,9 @@ import pytest
 
 from biped import record, sway
 from biped_robot import make_robot
+from made_tables import HEADER, as_csv, codes, csv_text, refusal, write
 from plantar.errors import LogError
-from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name, open_log
-
-HEADER = "time,joint.a.position,wrench.left.force.z"
-
-
-def csv_text(rows: int = 5, header: str = HEADER) -> str:
-    columns = header.count(",")
-    lines = [",".join([f"{0.01 * i:.2f}", *(f"{i + 0.25 * c}" for c in range(columns))]) for i in range(rows)]
-    return "\n".join([header, *lines]) + "\n"
-
-
-def write(folder: Path, content: str | bytes, name: str = "log.csv") -> Path:
-    path = folder / name
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
-
-
-def refusal(folder: Path, content: str | bytes, name: str = "log.csv") -> str:
-    """The one line with which a log is refused; it names the file."""
-    path = write(folder, content, name)
-    with pytest.raises(LogError) as caught:
-        open_log(path)
-    message = str(caught.value)
-    assert "\n" not in message
-    assert name in message
-    return message
-
-
-def codes(log: MotionLog) -> list[str]:
-    return [note.code for note in log.notes]
-
-
-def as_csv(log: MotionLog) -> str:
-    names = list(log.columns)
-    rows = np.column_stack([log.time, *(log.columns[name] for name in names)])
-    return (
-        "\n".join([",".join(["time", *names]), *(",".join(map(repr, row)) for row in rows.tolist())]) + "\n"
-    )
 
 
 def test_csv_gzip_and_parquet_read_alike(tmp_path: Path) -> None:
@@ -200,97 +163,6 @@ def test_a_stray_time_is_left_out_with_a_note(tmp_path: Path) -> None:
     assert codes(log) == ["time_order"]
     assert "0.99" in log.notes[0].text
     assert 100 not in log.column("joint.a.position")
-
-
-@pytest.mark.parametrize(
-    "name", ["a.mcap", "a.db3", "a.bag", "a.bin", "a.mat", "a.npz", "a.parquet", "data.log", "a.q"]
-)
-def test_a_file_of_no_bytes_is_empty_in_every_format(tmp_path: Path, name: str) -> None:
-    (tmp_path / name).touch()
-    with pytest.raises(LogError, match=f"{name}: is empty"):
-        open_log(tmp_path / name)
-
-
-def test_a_column_without_a_name_is_told_so(tmp_path: Path) -> None:
-    """A comma at the end of every line, as some loggers write."""
-    (tmp_path / "log.csv").write_text("time,joint.a.position,\n0,1,\n0.1,2,\n0.2,3,\n")
-    (note,) = open_log(tmp_path / "log.csv").notes
-    assert note.text == "log.csv: columns of no known name, not used: one without a name"
-
-
-def test_empty_files(tmp_path: Path) -> None:
-    assert "is empty" in refusal(tmp_path, "")
-    assert "is empty" in refusal(tmp_path, " \n\n")
-    assert "no samples" in refusal(tmp_path, HEADER + "\n")
-    assert "fewer than two samples" in refusal(tmp_path, HEADER + "\n0,1,2\n")
-    assert "is empty" in refusal(tmp_path, gzip.compress(b""), "log.csv.gz")
-    refusal(tmp_path, b"", "log.csv.gz")
-    assert "Parquet" in refusal(tmp_path, b"P", "log.parquet")
-
-
-def test_a_file_cut_in_the_middle_of_a_row(tmp_path: Path) -> None:
-    log = open_log(write(tmp_path, csv_text() + "0.05,7"))
-    assert len(log) == 5
-    assert codes(log) == ["file_cut"]
-    log = open_log(write(tmp_path, csv_text() + "0.05,7\n"))
-    assert len(log) == 5
-    assert codes(log) == ["file_cut"]
-
-
-def test_a_file_cut_in_the_middle_of_a_number_loses_that_row(tmp_path: Path) -> None:
-    text = csv_text() + "0.05,123.456,789.125"
-    for cut in range(1, 8):
-        log = open_log(write(tmp_path, text[:-cut]))
-        assert len(log) == 5, text[:-cut][-20:]
-        assert codes(log) == ["file_cut"]
-
-
-def test_a_last_line_without_an_end_of_line_is_left_out_with_a_note(tmp_path: Path) -> None:
-    """Nobody can tell 12.5 from 12.59 cut short."""
-    log = open_log(write(tmp_path, csv_text().rstrip("\n")))
-    assert len(log) == 4
-    assert codes(log) == ["file_cut"]
-
-
-def test_a_file_cut_within_its_header(tmp_path: Path) -> None:
-    refusal(tmp_path, "time,joint.a.posi")
-
-
-def test_a_gzip_stream_cut_anywhere_gives_its_whole_lines(tmp_path: Path) -> None:
-    random = np.random.default_rng(0)
-    rows = [f"{0.01 * i:.2f},{random.normal()},{random.normal()}" for i in range(400)]
-    whole = gzip.compress("\n".join([HEADER, *rows, ""]).encode())
-    lengths = []
-    for share in (0.5, 0.9, 0.999):
-        log = open_log(write(tmp_path, whole[: int(share * len(whole))], "log.csv.gz"))
-        assert "file_cut" in codes(log)
-        expected = [float(row.split(",")[1]) for row in rows[: len(log)]]
-        np.testing.assert_array_equal(log.column("joint.a.position"), expected)
-        lengths.append(len(log))
-    assert 100 < lengths[0] < lengths[1] < lengths[2] <= 400
-
-
-def test_several_gzip_members_are_one_file(tmp_path: Path) -> None:
-    first, second = csv_text(4), "0.10,1,2\n0.20,3,4\n"
-    log = open_log(
-        write(tmp_path, gzip.compress(first.encode()) + gzip.compress(second.encode()), "log.csv.gz")
-    )
-    assert len(log) == 6
-
-
-def test_files_that_are_not_what_they_say(tmp_path: Path) -> None:
-    assert "gzip" in refusal(tmp_path, csv_text(), "log.csv.gz")
-    damaged = bytearray(gzip.compress(csv_text(200).encode()))
-    damaged[len(damaged) // 2] ^= 0xFF
-    assert "gzip" in refusal(tmp_path, bytes(damaged), "log.csv.gz")
-    assert "Parquet" in refusal(tmp_path, csv_text(), "log.parquet")
-    assert "not UTF-8 text at line 2" in refusal(tmp_path, bytes(range(1, 256)) * 8)
-
-
-def test_a_cut_parquet_file_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "whole.parquet"
-    pa_parquet.write_table(pa.table({"time": [0.0, 0.1], "joint.a.position": [1.0, 2.0]}), path)
-    assert "Parquet" in refusal(tmp_path, path.read_bytes()[:-10], "log.parquet")
 
 
 def test_a_ragged_row_in_the_middle_is_an_error(tmp_path: Path) -> None:
