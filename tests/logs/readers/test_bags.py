@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import struct
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-import log_bags
 from biped import record, sway
 from biped_robot import make_robot
 from log_formats import write_mcap, write_ros1
+from mcap_records import mcap_of_chunk
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log, read_limit
@@ -243,61 +242,10 @@ def test_without_a_robot_sensors_go_by_their_topics(original: MotionLog, tmp_pat
     assert any(name.startswith("imu.sensors_torso") for name in names)
 
 
-def test_stamps_that_are_not_set_fall_back_to_times_of_receipt(original: MotionLog, tmp_path: Path) -> None:
-    pytest.importorskip("rosbags")
-    real = log_bags.ros_messages
-
-    def without_stamps(log, store, ros1):  # type: ignore[no-untyped-def]
-        for topic, kind, stamp, message in real(log, store, ros1):
-            message.header.stamp.sec = message.header.stamp.nanosec = 0
-            yield topic, kind, stamp, message
-
-    log_bags.ros_messages = without_stamps
-    try:
-        path, _ = write_ros1(original, tmp_path)
-    finally:
-        log_bags.ros_messages = real
-    log = open_log(path)
-    assert "receive_time" in {note.code for note in log.notes}
-    np.testing.assert_allclose(log.time, original.time, atol=1e-8)
-
-
-@pytest.mark.parametrize(("behind", "told"), [(0.02, False), (1.5, True)])
-def test_a_sensor_on_a_clock_of_its_own_is_told(
-    behind: float, told: bool, original: MotionLog, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Its header says another time than all others' when they are received together."""
-    real = log_bags.ros_messages
-
-    def of_another_computer(log, store, ros1):  # type: ignore[no-untyped-def]
-        for topic, kind, stamp, message in real(log, store, ros1):
-            if topic == "/sensors/torso/imu":
-                earlier = stamp + 10**10 - round(1e9 * behind)
-                message.header.stamp.sec, message.header.stamp.nanosec = divmod(earlier, 10**9)
-            else:
-                message.header.stamp.sec += 10
-            yield topic, kind, stamp + 10**10, message
-
-    monkeypatch.setattr(log_bags, "ros_messages", of_another_computer)
-    path, _ = write_ros1(original, tmp_path)
-    notes = [note.text for note in open_log(path).notes if note.code == "clocks_apart"]
-    assert bool(notes) == told
-    assert all("stamps of /sensors/torso/imu are 1.5 s older" in text for text in notes)
-
-
 def test_an_imu_without_attitude_has_no_such_columns(original: MotionLog, tmp_path: Path) -> None:
     bare = {name: values for name, values in original.columns.items() if ".orientation." not in name}
     save_log(MotionLog("bare", original.time, bare), tmp_path / "bare.mcap")
     assert set(open_log(tmp_path / "bare.mcap").columns) == set(bare)
-
-
-def test_epoch_stamps_keep_their_digits(original: MotionLog, tmp_path: Path) -> None:
-    late = MotionLog("late", original.time + 1_700_000_000, original.columns)
-    save_log(late, tmp_path / "late.mcap")
-    log = open_log(tmp_path / "late.mcap")
-    np.testing.assert_allclose(np.diff(log.time), np.diff(late.time), atol=1e-6)
-    assert 0 <= log.time[0] < 1
-    assert any("1700000000" in note.text for note in log.notes)
 
 
 def test_files_of_another_kind_are_refused_in_one_line(tmp_path: Path) -> None:
@@ -319,18 +267,8 @@ def test_files_of_another_kind_are_refused_in_one_line(tmp_path: Path) -> None:
 def test_a_decompression_bomb_is_left_out(tmp_path: Path) -> None:
     zstandard = pytest.importorskip("zstandard")
     packed = zstandard.ZstdCompressor().compress(bytes(100 * 2**20))
-
-    def text(word: bytes) -> bytes:
-        return struct.pack("<I", len(word)) + word
-
-    def record_of(code: int, body: bytes) -> bytes:
-        return struct.pack("<BQ", code, len(body)) + body
-
     for claimed in (1000, 100 * 2**20, 2**60):
-        chunk = (
-            struct.pack("<QQQI", 0, 0, claimed, 0) + text(b"zstd") + struct.pack("<Q", len(packed)) + packed
-        )
-        (tmp_path / "bomb.mcap").write_bytes(b"\x89MCAP0\r\n" + record_of(6, chunk))
+        (tmp_path / "bomb.mcap").write_bytes(mcap_of_chunk(packed, claimed))
         with pytest.raises(LogError, match="no message"):
             open_log(tmp_path / "bomb.mcap")
 
@@ -344,14 +282,3 @@ def test_a_bag_of_many_bombs_is_stopped_by_its_own_size(
     monkeypatch.setattr(read_limit, "RATIO", 0)
     with pytest.raises(LogError, match="unpacks to more than 1 kB"):
         open_log(path)
-
-
-@pytest.mark.parametrize(
-    ("time", "outside"), [([-0.5, 0.0, 0.5], -0.5), ([2.0**31 - 1, 2.0**31, 2.0**31 + 1], 2.0**31)]
-)
-def test_a_time_that_no_stamp_holds_is_named(time: list[float], outside: float, tmp_path: Path) -> None:
-    """Seconds of a stamp are counted from 0 to 2^31, and what is written is whole or not there."""
-    with pytest.raises(LogError, match="ROS stamp") as refused:
-        save_log(MotionLog("log", np.array(time), {}), tmp_path / "log.mcap")
-    assert f"t = {outside:.10g} s" in str(refused.value)
-    assert not any(tmp_path.iterdir())

@@ -20,6 +20,7 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot
 from log_formats import WRITERS
+from mcap_records import mcap_of_chunk
 from plantar.errors import LogError
 from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
@@ -59,12 +60,6 @@ def refusal(path: Path, **limits: int) -> str:
     return message
 
 
-def mcap_chunk(packed: bytes, claimed: int) -> bytes:
-    body = struct.pack("<QQQI", 0, 0, claimed, 0) + struct.pack("<I", 4) + b"zstd"
-    body += struct.pack("<Q", len(packed)) + packed
-    return b"\x89MCAP0\r\n" + struct.pack("<BQ", 6, len(body)) + body
-
-
 def csv_gz_bomb(path: Path) -> None:
     """15 gzip streams of 2**26 bytes of rows."""
     rows = gzip.compress(b"0,0,0\n" * (2**26 // 6))
@@ -84,7 +79,7 @@ def mcap_bomb(path: Path) -> None:
     """One chunk of 2**30 zeros."""
     packer = zstandard.ZstdCompressor().compressobj()
     packed = b"".join(packer.compress(bytes(2**24)) for _ in range(64)) + packer.flush()
-    path.write_bytes(mcap_chunk(packed, 2**30))
+    path.write_bytes(mcap_of_chunk(packed, 2**30))
 
 
 @pytest.mark.parametrize(
