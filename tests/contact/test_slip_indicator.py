@@ -119,3 +119,9 @@ def test_a_sole_that_turns_is_seen_whatever_the_other_does() -> None:
     assert not turning(elastic, PERIOD).any(), "a bush's own twist"
     to_and_fro = apart(np.radians(0.8), 8.0, 8.15) - apart(np.radians(0.8), 8.15, 8.3)
     assert not turning(twist_speed(to_and_fro + drift, BOTH, PERIOD), PERIOD).any(), "a bush that turns back"
+
+
+def test_a_slide_that_is_sure_makes_no_other_one_sure() -> None:
+    sure, possible = (TIME >= 8.0) & (TIME < 8.4), (TIME >= 12.0) & (TIME < 12.4)
+    speed = np.where(sure, 0.006, np.where(possible, 0.004, 0.0005))
+    assert np.array_equal(slides([indicator(speed)], speed, PERIOD), sure)

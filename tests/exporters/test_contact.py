@@ -239,3 +239,15 @@ def test_a_slip_becomes_the_spring_and_damper_of_swings_of_one_size(tmp_path: Pa
     for wrong in (0.0, -0.1, 3.0, float("nan")):
         with pytest.raises(ExportError, match="no angle of a foot"):
             export(made, "openhrp", tmp_path / "no.conf", swing=wrong)
+
+
+def test_points_touch_what_the_shapes_touched(tmp_path: Path) -> None:
+    """contype and conaffinity of a model whose feet meet the floor, and nothing of the robot."""
+    urdf, model = write_urdf(tmp_path / "b.urdf"), write_mjcf(tmp_path / "model.xml")
+    masks = 'contype="2" conaffinity="4"'
+    model.write_text(model.read_text().replace('_foot" size', f'_foot" {masks} size'))
+    export(result(urdf), "mujoco-contact", tmp_path / "out.xml", model=model)
+    found = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
+    points = [geom for geom in range(found.ngeom) if "_contact_" in found.geom(geom).name]
+    assert points
+    assert {(int(found.geom_contype[geom]), int(found.geom_conaffinity[geom])) for geom in points} == {(2, 4)}

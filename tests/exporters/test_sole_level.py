@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from export_robots import write_mjcf
+from export_robots import CENTRE, bush_rotation, write_mjcf
 from plantar.errors import ExportError
 from plantar.exporters import export
 from plantar.exporters.mjcf.file import INCLUDE_LIMIT
@@ -63,3 +64,18 @@ def test_includes_are_bounded(files: int, valid: bool, tmp_path: Path) -> None:
     else:
         with pytest.raises(ExportError, match="includes more than 100 files"):
             load_mjcf(tmp_path / "model.xml", Notes())
+
+
+def test_a_plate_lies_as_the_bush_under_a_model_without_feet(feet: dict[str, Any], tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    model = write_mjcf(tmp_path / "model.xml")
+    lines = [line for line in model.read_text().splitlines() if '_foot"' not in line and "_heel" not in line]
+    model.write_text("\n".join(lines))
+    notes = export(feet, "mjcf", tmp_path / "out.xml", model=model)
+    assert "export_plate" in {note.code for note in notes}
+    made = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
+    plate, turn = made.geom("left_bush_plate"), np.zeros(9)
+    mujoco.mju_quat2Mat(turn, plate.quat)
+    np.testing.assert_allclose(turn.reshape(3, 3), bush_rotation("left"), atol=1e-6)
+    bottom = plate.pos - bush_rotation("left")[:, 2] * plate.size[2]
+    assert (bottom - CENTRE) @ bush_rotation("left")[:, 2] == pytest.approx(-0.03, abs=1e-3)

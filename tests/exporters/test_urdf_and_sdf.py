@@ -218,3 +218,25 @@ def test_a_sole_behind_a_sensor_is_cut_off_by_the_bush(target: str, urdf: Path, 
     parent = joint.find("parent")
     assert parent is not None
     assert (parent.get("link") or parent.text) == "left_bush_sole"
+
+
+def test_an_sdf_made_from_a_urdf_keeps_each_links_centre_of_mass(feet: dict[str, Any], urdf: Path) -> None:
+    out = urdf.with_name("out.sdf")
+    export(feet, "sdf", out)
+    shin = ET.parse(out).getroot().find(".//link[@name='left_shin']/inertial")
+    assert shin is not None
+    assert (shin.findtext("mass"), shin.findtext("inertia/ixx")) == ("4", "0.05")
+    assert [float(part) for part in shin.findtext("pose", "").split()] == [0, 0, -0.2, 0, 0, 0]
+
+
+def test_a_second_sdf_export_leaves_one_spring_in_each_joint(feet: dict[str, Any], tmp_path: Path) -> None:
+    export(feet, "sdf", tmp_path / "one.sdf")
+    softer = copy.deepcopy(feet)
+    softer["parameters"][2]["value"] = 300.0  # left pitch stiffness
+    export(softer, "sdf", tmp_path / "two.sdf", model=tmp_path / "one.sdf")
+    springs = {
+        joint.get("name"): [float(one.text or "nan") for one in joint.iter("spring_stiffness")]
+        for joint in ET.parse(tmp_path / "two.sdf").getroot().iter("joint")
+    }
+    assert springs["LLEG_BUSH_PITCH"] == [300.0]
+    assert {name for name, found in springs.items() if len(found) > 1} == set()

@@ -87,6 +87,7 @@ def test_joints_and_bodies_meet(tmp_path: Path) -> None:
         for axis in axes:
             joint = UsdPhysics.Joint(stage.GetPrimAtPath(f"/World/biped/{joint_name(foot, axis)}"))
             np.testing.assert_allclose(frame(joint, 0), frame(joint, 1), atol=1e-6)
+            assert not joint.GetCollisionEnabledAttr().Get(), "a sole stands in its ankle's shapes"
     yaw = np.array([[np.cos(0.4), -np.sin(0.4), 0], [np.sin(0.4), np.cos(0.4), 0], [0, 0, 1]])
     joint = UsdPhysics.Joint(stage.GetPrimAtPath("/World/biped/LLEG_BUSH_PITCH"))
     np.testing.assert_allclose(frame(joint, 0)[0], yaw @ (CENTRE + [0, 0.1, 0.1]), atol=1e-6)

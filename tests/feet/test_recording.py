@@ -9,7 +9,7 @@ import pytest
 
 from biped import record, sway
 from plantar.feet.prepare_log import checked, prepare
-from plantar.feet.recording import Recording, filtered_recording, moved_centre
+from plantar.feet.recording import Recording, filtered_recording, moment_arm_effect, moved_centre
 from plantar.feet.regression.load_torque import moment_columns
 from plantar.feet.regression.regression_data import blocks_of
 from plantar.robot.model import RobotModel
@@ -101,3 +101,13 @@ def test_what_joints_and_imu_do_passes_the_bushes_filter(robot: RobotModel) -> N
     found, inside = filtered_recording(given, CUTOFF), slice(200, -200)
     np.testing.assert_allclose(found.encoder_rates["left"][inside], both((2,), 0.0)[inside], atol=0.02)
     np.testing.assert_allclose(found.imu_turns["left"][inside], both((2, 3), 0.0)[inside], atol=0.06)
+
+
+def test_the_slide_lifts_the_centre_along_the_ankle_and_roll_turns_with_pitch(walk: Recording) -> None:
+    """z e_z × force is (-F_y, F_x, 0) z; of it the roll axis, pitched by 0.5 rad, sees cos(0.5) = 0.878."""
+    bush = walk.bushes["left"]
+    wrench = np.tile([20.0, -30.0, 400.0, 0.0, 0.0, 0.0], (len(walk.time), 1))
+    bent = replace(bush, wrench=wrench, deflection=np.tile([0.5, 0.1], (len(walk.time), 1)))
+    standing = replace(walk, bushes={"left": bent}, stances={**walk.stances, "left": None})
+    expected = [-400.0 * 20.0, np.cos(0.5) * 400.0 * -30.0]
+    np.testing.assert_allclose(moment_arm_effect(standing, "left"), np.tile(expected, (len(walk.time), 1)))

@@ -237,3 +237,12 @@ def test_without_dask_the_extra_is_named(
     monkeypatch.setitem(sys.modules, "distributed", None)
     line = refused(capsys, "fleet", "run", small_fleet(tmp_path, 1), "--out", tmp_path / "out", "--quiet")
     assert "pip install 'plantar[fleet]'" in line
+
+
+def test_a_group_that_a_new_log_joined_is_fitted_again(client: Any, tmp_path: Path) -> None:
+    """With the log that was fitted alone before, which is no result of both."""
+    make_logs(tmp_path, 2)
+    out, rows = tmp_path / "out", [("g", "robot.yaml", f"log_{k}.parquet", "", "", "") for k in range(2)]
+    done(client, write_manifest(tmp_path / "one.csv", rows[:1]), out)
+    both = done(client, write_manifest(tmp_path / "both.csv", rows), out)
+    assert (both.reused, both.done) == (0, 1)

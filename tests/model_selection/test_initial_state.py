@@ -14,19 +14,21 @@ VALUES, SHAPE, CUTOFF = np.array([434.0, 15.89, 5.0]), np.array([0.01]), 8.0
 FIRST = 200  # samples that show the offset
 
 
-def filtered(path: np.ndarray, states: list[float], offset: float) -> tuple[BushMotion, np.ndarray]:
+def filtered(
+    path: np.ndarray, states: list[float], offset: float, cutoff: float = CUTOFF
+) -> tuple[BushMotion, np.ndarray]:
     """A motion and the torque of a bush whose element starts in `states`, one a run, both filtered."""
     motion = BushMotion(path, np.gradient(path, PERIOD), PERIOD)
     torque = Elastoplastic().columns(motion, SHAPE, np.array(states)) @ VALUES + offset
     smooth = BushMotion(
-        low_pass(motion.deflection, PERIOD, CUTOFF), low_pass(motion.rate, PERIOD, CUTOFF), PERIOD
+        low_pass(motion.deflection, PERIOD, cutoff), low_pass(motion.rate, PERIOD, cutoff), PERIOD
     )
-    return smooth, low_pass(torque, PERIOD, CUTOFF)
+    return smooth, low_pass(torque, PERIOD, cutoff)
 
 
-def found(motion: BushMotion, torque: np.ndarray, first: np.ndarray) -> np.ndarray:
+def found(motion: BushMotion, torque: np.ndarray, first: np.ndarray, cutoff: float = CUTOFF) -> np.ndarray:
     used = np.isfinite(torque)
-    return initial_states_of(Elastoplastic(), VALUES, SHAPE, motion, torque, used, first, CUTOFF)
+    return initial_states_of(Elastoplastic(), VALUES, SHAPE, motion, torque, used, first, cutoff)
 
 
 @pytest.mark.parametrize("state", [-0.7, 0.0, 0.9])
@@ -62,3 +64,10 @@ def test_a_motion_without_a_used_sample_begins_in_the_middle() -> None:
     nothing = np.zeros(len(torque), dtype=bool)
     states = initial_states_of(Elastoplastic(), VALUES, SHAPE, motion, torque, nothing, nothing, CUTOFF)
     np.testing.assert_array_equal(states, [0.0])
+
+
+def test_the_elements_memory_passes_the_filter_that_the_torque_has_passed() -> None:
+    """At 1 Hz, near the sway's own frequencies: unfiltered, it would look like a smaller state."""
+    motion, torque = filtered(sway(np.random.default_rng(4), 0.08, 0.5), [-0.7], 3.0, 1.0)
+    first = np.arange(len(torque)) < FIRST
+    assert found(motion, torque, first, 1.0) == pytest.approx([-0.7], abs=1.01 * (TRIED[1] - TRIED[0]))

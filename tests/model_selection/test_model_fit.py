@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +24,7 @@ from plantar.errors import DataError
 from plantar.estimation.slow_drift import drift_basis
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces, fit_all
-from plantar.model_selection.model_fit import ModelFit, fit_model, refine
+from plantar.model_selection.model_fit import ModelFit, _onward, fit_model, refine
 from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.model_selection.selection import choose_model
 from plantar.model_selection.variable_projection import Problem, best_candidate
@@ -297,3 +299,12 @@ def test_many_short_runs_each_have_their_own_start() -> None:
     assert all(len(initial_states) == 27 for initial_states in fit.initial_states.values())
     assert error_percent(fit, JENKINS)[0] < 1
     assert error_percent(fit, JENKINS)[1] < 3
+
+
+@pytest.mark.parametrize(("squares", "chosen"), [(1.005, 0), (0.995, 0), (0.985, 1)])
+def test_landings_that_the_air_has_led_to_are_kept_where_they_gain_a_hundredth(
+    squares: float, chosen: int
+) -> None:
+    rests: Any = [SimpleNamespace(squares=1.0), SimpleNamespace(squares=squares)]
+    problem: Any = None
+    assert _onward(problem, rests) is rests[chosen]

@@ -57,3 +57,12 @@ def test_a_slip_angle_beyond_four_fifths_of_the_swing_is_hardly_shown(name: str)
         shape = limits[1].copy()
         shape[0] = share * SWAY.swing
         assert (model.hardly_shown(shape, limits) is None) == shown
+
+
+def test_relaxation_is_tried_from_a_damper_to_a_tenth_of_the_longest_run() -> None:
+    """Of all runs of all motions; of short ones up to a fifth of a second."""
+    short = BushMotion(np.zeros(100), np.zeros(100), 0.01)
+    holed = BushMotion(np.where(np.arange(2000) == 1500, np.nan, SWAY.deflection), SWAY.rate, 0.01)
+    found = MODELS["standard_linear_solid"].candidates([short, holed, short])[:, 0]
+    assert found == pytest.approx(0.05 * (1.5 / 0.05) ** (np.arange(12) / 11))
+    assert MODELS["standard_linear_solid"].candidates([short])[-1, 0] == pytest.approx(0.2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from typing import Any
@@ -46,6 +47,10 @@ def test_it_is_served_here_alone_and_says_nothing_on_stdout(
     with live.LiveView(robot, port=8471) as view:
         assert view.url.startswith("http://127.0.0.1:")
         assert urllib.request.urlopen(view.url).status == 200
+        with pytest.raises(
+            urllib.error.URLError
+        ):  # another of this machine's addresses, as a network's would be
+            urllib.request.urlopen(view.url.replace("127.0.0.1", "127.0.0.2"), timeout=5)
         assert not view.wait_for_reader(0.0)
         show(view, replay)
     assert capsys.readouterr().out == ""

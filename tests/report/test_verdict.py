@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from plantar.report.verdict import foot_verdicts, limits, reach, trust
+from plantar.report.verdict import BEYOND, foot_verdicts, limits, reach, trust
 from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.feet_rows import Verdict
 from report_walks import standing_result
@@ -98,3 +98,9 @@ def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
     (text,) = reach(replace(result, validation=lost))
     assert text.endswith("m4 left pitch and 3 more (marked in the table).")
     assert "in 0 of 8 cases" in text
+
+
+@pytest.mark.parametrize(("verdict", "told"), [("usable", True), ("weak", True), ("unidentifiable", False)])
+def test_any_number_that_is_known_has_a_limit_beyond_which_it_is_not(verdict: Verdict, told: bool) -> None:
+    parameters = [replace(one, verdict=verdict) for one in ROWS]
+    assert (BEYOND in reach(replace(standing_result(), parameters=parameters))) == told

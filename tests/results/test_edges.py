@@ -19,8 +19,21 @@ from plantar.results.dynamics import INERTIA_SCHEMA, JOINTS_SCHEMA, DynamicsResu
 from plantar.results.dynamics_rows import DynamicsScore, InertialParameter, JointParameter
 from plantar.results.dynamics_text import joint_cells, score_cells
 from plantar.results.feet import FeetResult
-from plantar.results.feet_rows import AxisModel, DelayEstimate, LinearEquivalent, Parameter, ValidationRow
-from plantar.results.feet_text import delay_line, parameter_cells, prediction_cells, title_of_axis
+from plantar.results.feet_rows import (
+    Assumption,
+    AxisModel,
+    DelayEstimate,
+    LinearEquivalent,
+    Parameter,
+    ValidationRow,
+)
+from plantar.results.feet_text import (
+    assumption_cells,
+    delay_line,
+    parameter_cells,
+    prediction_cells,
+    title_of_axis,
+)
 from plantar.results.numbers import decimals_for, interval, number, percent, unit, with_uncertainty
 from plantar.results.residuals import read_table, tracks_of
 from plantar.results.stored import row_of
@@ -257,3 +270,19 @@ def test_seconds_are_added_up_by_reason() -> None:
     assert row.seconds == pytest.approx(6.6)
     assert row.used == pytest.approx(4.0)
     assert row.reasons == "slip (2.5 s); gap (0.1 s)"
+
+
+def test_what_the_robot_file_allows_for_is_told_in_the_units_of_the_shop() -> None:
+    """Metres as mm, shares as percent, with two deviations of what the logs show; a name and its widths stand once."""
+    none = (None, None)
+    rows = [
+        Assumption("bush_position", "left x", 0.003, 0.0012, 0.0001, 1.5, None),
+        Assumption("bush_position", "left y", 0.003, 0.0012, None, 1.5, None),
+        Assumption("wrench_gain", "left", 0.01, None, None, *none),
+        Assumption("wrench_delay", "all", 0.0, 0.0, 0.0, *none),
+    ]
+    assert assumption_cells(rows) == [
+        ("bush_position", "3.0 mm", "left x", "1.20 ± 0.20 mm", "± 1.5 %", "–"),
+        ("", "", "left y", "1.2 mm", "", ""),
+        ("wrench_gain", "1.0 %", "left", "not in these logs", "–", "–"),
+    ]

@@ -8,7 +8,7 @@ import pytest
 from plantar.conventions import Array
 from plantar.robot.uncertainty import Uncertainty
 from plantar.sensors.load_errors import FootLoads, _prior, load_errors
-from plantar.sensors.newton_sides import NewtonSides, moving
+from plantar.sensors.newton_sides import NewtonSides, longest_closed, moving
 from plantar.signals.filters import differentiate, low_pass
 
 PERIOD, COUNT, WEIGHT = 0.025, 1200, 900.0
@@ -109,3 +109,14 @@ def test_what_a_robot_file_allows_is_a_gain_along_the_load_and_a_turn_across_it(
     assert along @ allowed[:3, :3] @ across == pytest.approx(0.0, abs=1e-12)
     np.testing.assert_allclose(allowed[3:, 3:], 0.02**2 * np.eye(3))
     assert not allowed[:3, 3:].any()
+
+
+def test_what_calm_seconds_miss_is_compared_with_what_is_usual() -> None:
+    """A robot that hardly moves for 14 of 30 s: what is missed there is small, if not beside what moves."""
+    random, calm = np.random.default_rng(4), np.arange(COUNT) >= 640
+    predicted = random.standard_normal((COUNT, 6)) * np.where(calm, 1.0, 100.0)[:, None]
+    missed = random.standard_normal((COUNT, 6)) * np.where(calm, 1.0, 10.0)[:, None]
+    still = np.zeros_like(predicted)
+    assert longest_closed(predicted + missed, still, predicted, PERIOD) == slice(0, COUNT)
+    missed[320:400] *= 5.0  # 2 s in which half of the force is not explained
+    assert longest_closed(predicted + missed, still, predicted, PERIOD) == slice(400, COUNT)

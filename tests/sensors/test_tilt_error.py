@@ -255,3 +255,16 @@ def test_a_quiet_log_is_put_right_by_what_the_others_of_its_imu_show(tmp_path: P
     assert not any(note.code == "attitude_tilted" for note in alone.notes)
     together = identify_feet(robot, [*lively, quiet], settings=KNOWN)
     assert any(note.code == "attitude_tilted" and "quiet" in note.text for note in together.notes)
+
+
+def test_zeros_of_the_imu_are_no_pull() -> None:
+    """An accelerometer's along x and a gyroscope's about y, together: constant, they look like a pull along x."""
+    log = record(sway(duration=30.0))
+    orientation, rates, acceleration = parts(log)
+    found = tilt_error_of(orientation, rates + [0.0, 0.02, 0.0], acceleration + [1.0, 0.0, 0.0], log.period)
+    assert not found.believed
+
+
+def test_what_recordings_tell_adds_up_each_to_its_own() -> None:
+    total = TiltError(1.0, 2.0, 30.0, 400.0) + TiltError(5.0, 6.0, 70.0, 800.0)
+    assert total == TiltError(6.0, 8.0, 100.0, 1200.0)

@@ -70,3 +70,12 @@ def test_one_bad_day_does_not_hide_a_step_behind_it() -> None:
     ((first, seen),) = watch(values, np.ones(60), limits_of(1 / 4380, 1 / 4380)).steps
     assert abs(first - 45) <= 1
     assert seen < 50
+
+
+def test_the_days_of_a_step_are_the_next_baseline() -> None:
+    """A step of day 40 is seen on day 41 or 42; with the days from 40 on, day 44 is compared with four others."""
+    values = np.random.default_rng(12).normal(0, 1, 60) + 12.0 * (np.arange(60) >= 40)
+    values[44] += 60.0
+    found = watch(values, np.ones(60), limits_of(1e-3, 1e-3))
+    assert found.outliers == (44,)
+    assert [first for first, _ in found.steps] == [40]

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log, text_numbers
@@ -218,3 +219,14 @@ def test_how_large_a_log_may_be(tmp_path: Path) -> None:
 def test_what_no_sensor_reads_is_no_number(value: float, read: bool) -> None:
     log = MotionLog("log", TIME[:3], {"joint.a.position": np.array([0.0, value, 1.0])})
     assert np.isfinite(log.column("joint.a.position")).sum() == 2 + read
+
+
+def test_a_port_of_stamps_alone_is_refused(tmp_path: Path) -> None:
+    """A packet's number and one stamp, or two where info.log says that both were dumped."""
+    robot = make_robot(tmp_path / "robot", columns={"ports": {"left": "wrench.left"}})
+    for info, line in (("Stamp: rx;", "1 0.01"), ("Stamp: tx;rx;", "1 0.01 0.02")):
+        (tmp_path / "dump" / "left").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "dump" / "left" / "info.log").write_text(f"Type: Bottle;\n{info}\n")
+        (tmp_path / "dump" / "left" / "data.log").write_text(f"{line}\n" * 100)
+        with pytest.raises(LogError, match=r"data\.log: holds no values beside packet number and stamp"):
+            open_log(tmp_path / "dump", robot)

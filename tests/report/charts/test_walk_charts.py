@@ -40,6 +40,7 @@ def test_stances_walks_and_all_together_stand_at_their_stiffness() -> None:
     assert fitted[4].hover == "walk_1, 4.00 to 4.49 s: K = 540.0 N·m/rad"
     walks = dots(pitch, "walk fit") + dots(pitch, "walk validate")
     assert [number_at(pitch, dot.y) for dot in walks] == pytest.approx(3 * [STIFFNESS + 5], abs=0.5)
+    assert walks[0].hover == "walk_1 alone, 5 stances: K = 505 ± 20 N·m/rad"
     (band,) = (mark for mark in pitch.panels[0].marks if isinstance(mark, Band))
     assert number_at(pitch, band.y) == pytest.approx(STIFFNESS + 8, abs=0.5)
     assert number_at(pitch, band.y + band.height) == pytest.approx(STIFFNESS - 8, abs=0.5)
