@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 from unittest.mock import Mock, patch
 
 import numpy as np
 import pytest
 
 import design_samples
+from plantar.design.paper_motions import PaperMotions
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.writing import promised
+from plantar.motions.select_motions import Choice, Selection
 
 LATE = 0.005  # s, in the preset of the rehearsals
 ROLL = ("left", "roll", "stiffness")
@@ -116,3 +119,25 @@ def test_the_sum_of_vertical_compliances_is_that_of_the_worst_draw() -> None:
     assert promised.vertical(drawn(100.0, axis="z"), 100.0) is None, "of one foot alone"
     with patch.object(Rehearsal, "feet_found", lambda *_: ()):
         assert promised.vertical(Rehearsal(1.0), 100.0) is None
+
+
+def test_of_the_papers_motions_the_best_is_written_to_its_end_and_promised_alone_and_with_others() -> None:
+    """A plan of 2 s at 200 Hz, at 50 Hz; half widths of one axis of one foot and of the best set."""
+    time = np.arange(401) / 200
+    plan: Any = Mock(time=time, joints=("hip", "knee"), positions=np.column_stack([time, 3 - time]))
+    plan.name = "tilt_A"
+    keys = [("left", axis, name) for axis in ("pitch", "roll") for name in ("stiffness", "damping")]
+    alone, pair = (
+        Choice(motions, {key: percent + place for place, key in enumerate(keys)}, 1.0)
+        for motions, percent in ((("tilt_A",), 5.0), (("sway", "tilt_A"), 1.0))
+    )
+    other = Choice(("sway",), dict.fromkeys(keys, 9.0), 1.0)
+    found = PaperMotions(Selection((other, alone), (alone, pair), pair, None), {}, plan)
+    log = found.log(50.0)
+    assert log.name == "tilt_A"
+    np.testing.assert_allclose(log.time, np.arange(101) / 50)
+    np.testing.assert_allclose(log.column("joint.knee.position"), 3 - log.time)
+    assert found.half_widths() == [
+        {"foot": foot, "axis": axis, "name": name, "percent": 5.0 + place, "best_set_percent": 1.0 + place}
+        for place, (foot, axis, name) in enumerate(keys)
+    ]

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock, patch
 
 import numpy as np
 import pytest
 
 from plantar.dynamics.stream import RowFactor
 from plantar.whole_body import folds as folding
+from plantar.whole_body import regularised_fit
 from plantar.whole_body.folds import Folds, pooled
 from plantar.whole_body.joints import _judge
-from plantar.whole_body.regularised_fit import HeldOutError, RegularisedProblem, chosen_regularisation
+from plantar.whole_body.regularised_fit import (
+    REGULARISATIONS,
+    HeldOutError,
+    RegularisedProblem,
+    chosen_regularisation,
+)
 
 RANDOM = np.random.default_rng(5)
 
@@ -168,3 +175,18 @@ def test_a_joint_s_term_is_judged(
 ) -> None:
     """A fifth of the value, or of an offset a twentieth of the torque."""
     assert _judge(term, value, interval, torque, still) == said
+
+
+@pytest.mark.parametrize(("worst", "tried"), [(11.0, 7), (12.1, 5)])
+def test_larger_weights_are_tried_until_one_misses_three_times_the_least(worst: float, tried: int) -> None:
+    """A weight that misses a little more than the one before it ends nothing."""
+    missed = dict(zip(REGULARISATIONS, (5.0, 4.0, 4.5, 4.2, worst, 11.9, 12.1, 4.0), strict=True))
+    problem = RegularisedProblem.__new__(RegularisedProblem)
+    made: Any = problem
+    made.folds, made.every, made.base, made.prior = MagicMock(), range(2), None, None
+    made.folds.__len__.return_value = 2
+    made._regularised = lambda normal, weight: missed[weight]
+    made._held_out = lambda fits, weights: np.array(fits)
+    with patch.object(regularised_fit, "normal_of"):
+        found = problem._errors({}, lambda said: None)
+    assert [one.regularisation for one in found] == list(REGULARISATIONS[:tried])
