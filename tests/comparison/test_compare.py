@@ -25,7 +25,7 @@ from plantar.logs.save import save_log
 from plantar.motions.plan import Plan
 from plantar.report.figures.plots import save
 from plantar.report.figures.simulation import replays
-from plantar.results.feet import FeetResult, Parameter
+from plantar.results.feet import FeetResult, Offset, Parameter
 from plantar.robot.model import RobotModel, load_robot
 from plantar.twin.bush import PAPER, Feet
 from plantar.twin.play import rolled
@@ -298,3 +298,19 @@ def test_the_command_prints_its_scores(
     stored = json.loads((tmp_path / "out" / "comparison.json").read_text())
     assert [row["feet"] for row in stored["scores"]] == list(KINDS)
     assert (tmp_path / "out" / "comparison.svg").is_file()
+
+
+def test_zeros_of_the_sensors_are_no_rest_angles_of_what_is_played(
+    result: FeetResult, log: MotionLog
+) -> None:
+    offset = Offset("left", "pitch", "Tilt3", "N.m", 5.0, 0.1)
+    found, without = (
+        scenes(replace(result, offsets=offsets), hrp2.robot(), plan_of(hrp2.robot(), log))
+        for offsets in ((offset,), ())
+    )
+    for kind in KINDS:
+        places = [
+            {(e.get("name"), e.get("pos"), e.get("springref")) for e in ET.fromstring(made[kind].xml).iter()}
+            for made in (found, without)
+        ]
+        assert places[0] == places[1]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -10,7 +12,9 @@ from plantar import _core
 from plantar.conventions import Array
 from plantar.dynamics import Equation
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
+from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, turned_motions
 from plantar.robot.kinematics import packed_frame
+from plantar.robot.model import RobotModel
 
 PLACEMENT = pin.SE3(pin.rpy.rpyToMatrix(0.3, -0.4, 0.5), np.array([0.1, -0.2, 0.3]))
 G = 9.80665
@@ -80,3 +84,19 @@ def test_the_root_is_seen_from_itself_where_it_is() -> None:
     seen = np.concatenate([turn.T @ [1.0, 2.0, 3.0], still])[None]
     found = root_motion(Equation(arm()), 0, PLACEMENT, seen, *np.ones((3, 1, 3)))
     assert found[0] == pytest.approx(np.concatenate([[1.0, 2.0, 3.0], still]))
+
+
+def test_an_imu_that_is_turned_in_its_own_axes_reads_as_one_mounted_so(robot: RobotModel) -> None:
+    """A mount of 0.5, -0.4 and 1.2 rad, from which the turn about x is none about the link's x."""
+    equation, random = Equation(robot.floating_model), np.random.default_rng(2)
+    positions = 0.1 * random.standard_normal((50, len(robot.joint_names)))
+    signals = InertialSignals(positions, *random.standard_normal((2, 50, 3)), 0.01)
+
+    def mounted(rotation: Array) -> RobotModel:
+        placement = replace(robot.required_imu.placement, rpy=pin.rpy.matrixToRpy(rotation))
+        return replace(robot, imu=replace(robot.required_imu, placement=placement))
+
+    mount, turn = pin.rpy.rpyToMatrix(0.5, -0.4, 1.2), pin.exp3(np.array([0.3, 0.0, 0.0]))
+    (found,) = turned_motions(mounted(mount), equation, signals, slice(10, 40), [turn])
+    expected = inertial_motion(mounted(mount @ turn), equation, signals, slice(10, 40))
+    np.testing.assert_allclose(found.base, expected.base, atol=1e-9)
