@@ -6,6 +6,7 @@ from at_their_edges import AT_THEIR_EDGES
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
+from drawn_afresh import DRAWN_AFRESH
 from drawn_again import DRAWN_AGAIN
 from drawn_anew import DRAWN_ANEW
 from drawn_blind import DRAWN_BLIND
@@ -44,4 +45,5 @@ LISTS = {
     "drawn_by_lot": DRAWN_BY_LOT,
     "drawn_blind": DRAWN_BLIND,
     "literal_edges": LITERAL_EDGES,
+    "drawn_afresh": DRAWN_AFRESH,
 }
