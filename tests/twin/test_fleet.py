@@ -11,6 +11,7 @@ import pytest
 from plantar.errors import PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
+from plantar.twin import fleet
 from plantar.twin.bush import PAPER
 from plantar.twin.fleet import AGEING, DRIFT, NEW_SOLE, STEP, stories, write_fleet
 from plantar.twin.other_rubber import ankle_joints, on_other_rubber
@@ -58,7 +59,8 @@ def test_each_robot_has_its_story() -> None:
     assert (told[3].gain == 1).all()
 
 
-def test_the_files_are_a_manifest_with_its_truth(tmp_path: Path) -> None:
+def test_the_files_are_a_manifest_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fleet, "planned", planned_part)
     manifest = write_fleet(tmp_path, 1, 2, motion=MOTION, preset="sensors", seed=3)
     rows = list(csv.DictReader(manifest.open()))
     assert [row["time"] for row in rows] == ["2026-01-01T09:00:00Z", "2026-01-02T09:00:00Z"]
