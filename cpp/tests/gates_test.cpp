@@ -1,0 +1,121 @@
+// What keeps readings from being believed, each watch by itself: zeros from the air, slides, edges, delays, loads, noise.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "check.hpp"
+#include "online/air_zero.hpp"
+#include "online/contradiction.hpp"
+#include "online/delay_watch.hpp"
+#include "online/edge_watch.hpp"
+#include "online/foot_noise.hpp"
+#include "online/slip_gate.hpp"
+
+namespace gates_test {
+
+using namespace plantar;
+
+constexpr double WEIGHT = 500.0, PERIOD = 0.001;  // N, s
+
+void a_zero_is_the_mean_of_swings_without_their_ends() {
+  AirZero zero;
+  const auto swing = [&zero](double force) {
+    for (int tick = 0; tick < 1000; ++tick) {
+      const bool ends = tick < 40 || tick >= 960;  // they still touch the ground, by less than what is calm
+      const double read = ends ? force + 20.0 : force;
+      zero.swing({0.0, 0.0, read, 0.0, 0.5, 0.0}, read, WEIGHT, PERIOD);
+    }
+    zero.landed();
+  };
+  check::that(!zero.known(), "nothing is known before the first swing");
+  swing(7.0);
+  check::that(zero.known(), "known behind it");
+  check::near(zero.value()[2], 7.0, 1e-9, "the force of its middle");
+  check::near(zero.value()[4], 0.5, 1e-9, "and the torque");
+  swing(9.0);
+  check::near(zero.value()[2], 8.0, 1e-9, "two swings count alike");
+}
+
+// Of a right sole beside a left one; whether a slide was sure behind the filter's start.
+template <typename Heading>
+bool slides(double left, const Heading& right) {
+  SlipGate gate;
+  bool sure = false;
+  for (int tick = 0; tick < 3000; ++tick) {
+    const double time = PERIOD * tick, turned = right(time);
+    const double heading = std::remainder(turned, 2.0 * std::numbers::pi);
+    sure = gate.step({0.0, 0.1, left}, {0.0, -0.1, heading}, PERIOD) == SlipGate::Verdict::sure || sure;
+  }
+  return sure;
+}
+
+void a_heading_that_passes_half_a_turn_is_no_slide() {
+  check::that(!slides(3.13, [](double time) { return 3.1416 + 0.005 * std::sin(2.0 * time); }), "a robot that faces back");
+  check::that(!slides(-3.13, [](double time) { return -3.1416 + 0.005 * std::sin(2.0 * time); }), "from the other side");
+  check::that(slides(3.13, [](double time) { return 3.1416 + 0.1 * std::clamp(time - 1.0, 0.0, 1.0); }), "it turns");
+}
+
+void an_edge_is_told_from_where_its_visit_began() {
+  EdgeWatch watch(WEIGHT);
+  const auto leans = [&watch](double angle) {
+    bool told = false;
+    for (int tick = 0; tick < 200; ++tick) told = watch.step(0.004, 300.0, {angle, 0.0}, {0.0, 0.0}, PERIOD);
+    return told;
+  };
+  check::that(!leans(0.05), "a foot that is bent as it comes to its edge does not lean");
+  check::that(leans(0.06), "one that turns on while its torque stays does");
+  watch.restart();
+  check::that(!leans(0.06), "begun anew, it does not");
+}
+
+void a_delay_stays_in_doubt_until_it_is_excluded() {
+  DelayWatch watch;
+  const auto late = [&watch](double seconds, double half) {
+    return watch.late(Lateness::of(seconds, half), 0.0, PERIOD);
+  };
+  check::that(!late(0.0045, 0.001), "less than five milliseconds");
+  check::that(!late(0.012, 0.007), "or less than sure");
+  check::that(late(0.012, 0.001), "more, and sure");
+  check::that(late(0.0045, 0.001), "it may still be as late");
+  check::that(!late(0.0035, 0.001), "it cannot be");
+}
+
+void an_unknown_zero_may_make_a_load_differ() {
+  const auto differs = [](double share, int unknown) {
+    WeightWatch watch(WEIGHT);
+    bool told = false;
+    for (int tick = 0; tick < 2000; ++tick) told = watch.differs(share * WEIGHT, unknown, PERIOD);
+    return told;
+  };
+  check::that(differs(0.75, 0), "feet that carry three quarters of the robot");
+  check::that(!differs(0.75, 1), "or of which one was not zeroed");
+  check::that(differs(0.65, 1), "but by no more than that");
+  check::that(!differs(0.65, 2), "two may be off by twice as much");
+}
+
+// A rate from angles has the angle's noise times the frequency, whose mean square below the cutoff is a third of the
+// cutoff's.
+void noise_of_a_rate_is_that_of_its_angle() {
+  constexpr double CUTOFF = 5.0;
+  FootNoise noise(CUTOFF);
+  for (int tick = 0; tick < 5000; ++tick) {
+    const double read = 1e-4 * std::sin(1e5 * tick);
+    noise.follow({{read, read}, {0.0, 0.0}, {0.0, 0.0, 0.0}, false}, PERIOD, PERIOD);
+  }
+  const double edge = 2.0 * std::numbers::pi * CUTOFF;
+  check::that(noise.of_angle[0] > 0.0, "there is noise");
+  check::near(noise.of_rate[0] / noise.of_angle[0], edge * edge / 3.0, 1e-9, "a third of the cutoff's square");
+}
+
+void run() {
+  a_zero_is_the_mean_of_swings_without_their_ends();
+  a_heading_that_passes_half_a_turn_is_no_slide();
+  an_edge_is_told_from_where_its_visit_began();
+  a_delay_stays_in_doubt_until_it_is_excluded();
+  an_unknown_zero_may_make_a_load_differ();
+  noise_of_a_rate_is_that_of_its_angle();
+}
+
+const check::Listed listed(run);
+
+}  // namespace gates_test
