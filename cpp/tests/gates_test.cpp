@@ -1,4 +1,5 @@
-// What keeps readings from being believed, each watch by itself: zeros from the air, slides, edges, delays, loads, noise.
+// What keeps readings from being believed, each watch by itself: zeros from the air, slides, edges, delays, loads and
+// noise.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -50,9 +51,12 @@ bool slides(double left, const Heading& right) {
 }
 
 void a_heading_that_passes_half_a_turn_is_no_slide() {
-  check::that(!slides(3.13, [](double time) { return 3.1416 + 0.005 * std::sin(2.0 * time); }), "a robot that faces back");
-  check::that(!slides(-3.13, [](double time) { return -3.1416 + 0.005 * std::sin(2.0 * time); }), "from the other side");
-  check::that(slides(3.13, [](double time) { return 3.1416 + 0.1 * std::clamp(time - 1.0, 0.0, 1.0); }), "it turns");
+  for (const double back : {3.1416, -3.1416}) {
+    const auto sways = [back](double time) { return back + 0.005 * std::sin(2.0 * time); };
+    const auto turns = [back](double time) { return back + 0.1 * std::clamp(time - 1.0, 0.0, 1.0); };
+    check::that(!slides(back, sways), "a robot that faces back");
+    check::that(slides(back, turns), "one sole that turns");
+  }
 }
 
 void an_edge_is_told_from_where_its_visit_began() {
