@@ -30,7 +30,7 @@ from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.far_arms import far_arms
-from plantar.feet.place.misread_joints import misread_joint_notes
+from plantar.feet.place.misread_joints import OUT_OF_TIME, misread_joint_notes
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.notes import Note
@@ -68,8 +68,8 @@ def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
             found.parameters.extend(unseen_rows(fitted.foot, axis, fitted.ready.fitted))
-    # A clock that is late is late about both axes, also about the one whose damping hardly shows it.
-    late = [note for note in found.notes if note.code == RECORDING_LATE]
+    # A clock that is late is late about both axes, also about the one that hardly shows it.
+    late = [note for note in found.notes if note.code in (RECORDING_LATE, OUT_OF_TIME)]
     notes = (*found.notes, *internal_errors(fitted.foot, fitted.given_up))
     return replace(found, parameters=doubted(found.parameters, late), notes=notes)
 
