@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
-from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
+from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first, untimed
 from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.odd_recordings import odd_recordings, odd_walks
@@ -94,7 +94,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     contradicted = contradiction(
         scores, wide, ready.recordings, predictions, ready.robot.uncertainty.imu_mount
     )
-    rows = axis_rows(wide, ready.fitted, predictions, contradicted)
+    rows = untimed(axis_rows(wide, ready.fitted, predictions, contradicted), ready.sensor_delay.note)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     walks = walk_stiffness(ready.recordings, wide)

@@ -95,8 +95,8 @@ def misread_joint_notes(
     alike = [one for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
         f"{wide.foot} {wide.axis}: the torque follows the angle far better if one error of measurement is taken off: "
-        f"{', or '.join(map(str, alike))}. Stiffness and damping follow it (valid: encoders without play, whose angles are the "
-        "links', all read at one moment; a stiff mount of the IMU)"
+        f"{', or '.join(map(str, alike))}. Stiffness and damping follow it (valid: encoders without play, whose angles "
+        "are the links', all read at one moment; a stiff mount of the IMU)"
     )
     together = all(one.kind == "together" for one in alike)
     return [Note(OUT_OF_TIME if together else MISREAD, "warning", text)]
