@@ -10,6 +10,7 @@
 #include "online/delay_watch.hpp"
 #include "online/edge_watch.hpp"
 #include "online/foot_noise.hpp"
+#include "online/memory_watch.hpp"
 #include "online/slip_gate.hpp"
 
 namespace gates_test {
@@ -111,6 +112,37 @@ void noise_of_a_rate_is_that_of_its_angle() {
   check::near(noise.of_rate[0] / noise.of_angle[0], edge * edge / 3.0, 1e-9, "a third of the cutoff's square");
 }
 
+// A spring and a damper, swayed by `size` [rad]: whether a memory is excluded, though the rows have none.
+bool memory_excluded(double size) {
+  constexpr double ROW = 0.025;  // s
+  const RegressionPrior prior = {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0, 0.1},
+                                 {},
+                                 {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9, 1e-9},
+                                 0.0,
+                                 1.0 / SUSPECTED_ANGLE,
+                                 0.0,
+                                 0.0,
+                                 0.0,
+                                 0.0,
+                                 ROW};
+  MemoryWatch watch(prior);
+  double element = 0.0, before = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    const double time = ROW * i, angle = size * std::sin(2.0 * time), rate = 2.0 * size * std::cos(2.0 * time);
+    element = std::clamp(element + (angle - before) / SUSPECTED_ANGLE, -1.0, 1.0), before = angle;
+    const double torque = 800.0 * angle + 20.0 * rate + 1.0 + 0.01 * std::sin(1e5 * i);
+    watch.add({{1.0, time, 0.0}, {angle, rate, element}, torque, {}}, ROW);
+    watch.work();
+  }
+  check::that(!watch.seen(), "there is none");
+  return watch.excluded();
+}
+
+void a_memory_is_excluded_by_motions_that_would_have_shown_it() {
+  check::that(!memory_excluded(0.0145), "29 mrad back and forth say nothing of what slips at 15");
+  check::that(memory_excluded(0.0155), "31 do");
+}
+
 void run() {
   a_zero_is_the_mean_of_swings_without_their_ends();
   a_heading_that_passes_half_a_turn_is_no_slide();
@@ -118,6 +150,7 @@ void run() {
   a_delay_stays_in_doubt_until_it_is_excluded();
   an_unknown_zero_may_make_a_load_differ();
   noise_of_a_rate_is_that_of_its_angle();
+  a_memory_is_excluded_by_motions_that_would_have_shown_it();
 }
 
 const check::Listed listed(run);

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import TRUTH, VERTICAL, record, sway
+from biped import TRUTH, VERTICAL, record, sway, times
 from biped_robot import write_robot
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimates import Contact, Flag
@@ -53,6 +53,17 @@ def test_at_the_edge_nothing_is_learnt(robot: RobotModel) -> None:
     assert edge[DAMAGE].all()
     assert edge.sum() == 200
     expect_unharmed(replay)
+
+
+def test_behind_an_edge_rows_wait_until_the_delay_has_passed_too(robot: RobotModel) -> None:
+    """Torques that are read 0.1 s late: for as long the rows behind an edge still hold the push."""
+    motion, late = sway(duration=60.0), 0.1
+    log, later = record(motion), record(motion, at=times(motion) - late)
+    log = log.with_columns({name: values for name, values in later.columns.items() if "wrench" in name})
+    replay = FootEstimator(robot, wrench_delay=late).replay(spoilt(log, "wrench.left.torque.y", 60.0))
+    found, truth = replay.estimate("left").pitch, TRUTH["left", "pitch"]
+    assert found.stiffness.value == pytest.approx(truth.stiffness, rel=1e-5)
+    assert found.damping.value == pytest.approx(truth.damping, rel=1e-5)
 
 
 def test_behind_an_edge_a_log_whose_time_begins_anew_teaches_at_once(robot: RobotModel) -> None:
@@ -166,6 +177,18 @@ def test_a_compliance_that_nobody_told_is_learnt(robot: RobotModel) -> None:
         half = found.compliance.half_width
         assert 0.1 < half / found.compliance.value < 0.5, "what no model has is part of it"
         assert found.compression == pytest.approx(found.load / VERTICAL, rel=0.06)
+
+
+@pytest.mark.parametrize("axis", "xy")
+def test_of_two_axes_the_surer_one_tells_the_compliance(robot: RobotModel, axis: str) -> None:
+    """Roll's torque is noise, or pitch's is: 10 N·m of it, a hundred times what a compliance moves."""
+    log = record(sway(duration=60.0))
+    for place, foot in enumerate(robot.feet):
+        noise = 10.0 * np.random.default_rng(place).standard_normal(len(log))
+        log = spoilt(log, f"wrench.{foot}.torque.{axis}", noise, slice(None))
+    replay = replayed(robot, log)
+    for foot in replay.feet:
+        assert replay.estimate(foot).compliance.value == pytest.approx(1 / VERTICAL, rel=0.01)
 
 
 def test_a_foot_zeroed_under_load_stands_always(robot: RobotModel) -> None:
