@@ -76,12 +76,14 @@ void what_has_stood_and_moved_again_is_not_doubted() {
 
 // What was frozen goes all at once where it should have gone meanwhile; a joint that sets out goes on.
 void a_frozen_joint_leaps() {
-  JointWatch frozen, starts;
+  JointWatch frozen, starts, slows;
   int leaps = 0, false_ones = 0;
   for (int i = 0; i < 800; ++i) {
     const double t = i / 200.0, goes = 0.02 * t, quick = 0.5 * std::max(t - 2.0, 0.0);
+    const double stops = 0.02 * std::min(t, 1.0) + 0.05 * (1.0 - std::exp(-50.0 * std::max(t - 2.0, 0.0)));
     frozen.frozen(t > 1.0 && t < 2.0 ? 0.02 : goes, 0.0, 0.005), starts.frozen(quick, 0.0, 0.005);
-    leaps += frozen.leapt(), false_ones += starts.leapt();
+    slows.frozen(stops, 0.0, 0.005);
+    leaps += frozen.leapt(), false_ones += starts.leapt() + slows.leapt();
   }
   check::that(leaps == 1 && false_ones == 0, "a frozen joint leaps, one that sets out does not");
 }
