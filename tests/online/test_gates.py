@@ -56,8 +56,8 @@ def test_at_the_edge_nothing_is_learnt(robot: RobotModel) -> None:
 
 
 def test_behind_an_edge_rows_wait_until_the_delay_has_passed_too(robot: RobotModel) -> None:
-    """Torques that are read 0.1 s late: for as long the rows behind an edge still hold the push."""
-    motion, late = sway(duration=60.0), 0.1
+    """Torques that are read 0.1 s early wait for the angles: for as long rows behind an edge still hold the push."""
+    motion, late = sway(duration=60.0), -0.1
     log, later = record(motion), record(motion, at=times(motion) - late)
     log = log.with_columns({name: values for name, values in later.columns.items() if "wrench" in name})
     replay = FootEstimator(robot, wrench_delay=late).replay(spoilt(log, "wrench.left.torque.y", 60.0))
