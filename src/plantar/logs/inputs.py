@@ -19,6 +19,7 @@ from plantar.errors import DataError, LogError, NoRoom, RobotError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import of_robot, open_log, reads_alike
 from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
+from plantar.logs.readers.urdf_names import with_following_joints
 from plantar.logs.stretches import LONGEST
 
 if TYPE_CHECKING:
@@ -209,7 +210,7 @@ def _largest(path: Path) -> float:
 
 def _log_of(log: LogInput, robot: RobotModel, longest: float) -> MotionLog:
     if isinstance(log, MotionLog):
-        return log.without_empty_joints()
+        return with_following_joints(log.without_empty_joints(), robot.following_joints)
     if isinstance(log, str | os.PathLike):
         return open_log(log, robot, longest=longest)
     raise _no_log(log)
