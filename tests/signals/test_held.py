@@ -84,7 +84,7 @@ def test_a_level_quaternions_first_number_is_not_held() -> None:
 
 @pytest.mark.parametrize("mount", [(0.0, 0.0, 0.0), (np.pi, 0.0, 0.3)])
 def test_an_orientation_is_held_as_a_whole(mount: tuple[float, float, float]) -> None:
-    """In whatever way the IMU is mounted: small leans leave the numbers that are large, or tell a turn, where they are."""
+    """In whatever way the IMU is mounted: small leans leave the numbers that are large where they are."""
     lean = np.where(TIME < 3, 2e-4, 0.1) * np.sin(3 * TIME)
     leans = Rotation.from_euler("zy", np.column_stack([np.full_like(lean, 0.4), lean]))
     names = [f"imu.chest.orientation.{axis}" for axis in "xyzw"]

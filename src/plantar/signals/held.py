@@ -75,7 +75,7 @@ def held_in(log: MotionLog, column: str) -> Mask:
 
 
 def _unlike_unit(log: MotionLog, column: str, held: Mask) -> Mask:
-    """Samples (N,) at which a quaternion's number that is `held` is no part of a unit quaternion, or all stopped with it.
+    """Samples (N,) at which a quaternion's number that is `held` fits no unit quaternion, or all others stopped too.
 
     A small turn, or one about one axis, leaves some of its numbers where they are.
     """

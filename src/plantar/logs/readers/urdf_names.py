@@ -1,4 +1,4 @@
-"""A log's joints as the URDF has them: under its names, and those that follow others where they follow recorded ones."""
+"""A log's joints as the URDF has them: under its names, and those that mimic others as far as these are recorded."""
 
 from __future__ import annotations
 
