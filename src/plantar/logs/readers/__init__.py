@@ -82,8 +82,11 @@ def open_log(
         raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
-    with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
-        log = reader(path, robot, ReadLimit(path, memory, longest=longest))
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
+            log = reader(path, robot, ReadLimit(path, memory, longest=longest))
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", path=path) from error
     return of_robot(log.without_empty_joints(), robot)
 
 
