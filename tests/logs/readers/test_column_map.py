@@ -159,7 +159,9 @@ def test_arrays_of_an_npz_that_are_no_columns_are_left_out(tmp_path: Path) -> No
     log = open_log(tmp_path / "log.npz")
     assert list(log.columns) == ["joint.a.position"]
     (note,) = [one for one in log.notes if one.code == "array_length"]
-    assert note.text.startswith("log.npz: not of 5 samples like most arrays, left out: gains (7), wide.0 (3)")
+    assert note.text.startswith(
+        "log.npz: not of 5 samples as the recording has, left out: gains (7), wide.0 (3)"
+    )
 
 
 @pytest.mark.parametrize(
@@ -167,7 +169,7 @@ def test_arrays_of_an_npz_that_are_no_columns_are_left_out(tmp_path: Path) -> No
     [
         ("time;joint.a.position\n0,0;1,5\n0,1;1,25e-2\n", "0,0;1,5"),
         ("0,0 1,5 7\n0,1 1,6 7\n", "0,0 1,5 7"),
-        ("0\t1\n1\t1,6\n", "1\t1,6"),
+        ("0\t1\n1\t1,6\n", "1 1,6"),
     ],
 )
 def test_decimal_commas_are_named(text: str, shown: str, tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import zipfile
 import zlib
-from collections import Counter
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -86,12 +85,11 @@ def _read_npz(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Arra
     except BROKEN as error:
         reason = " ".join(str(error).split())[:120]
         raise LogError(f"is not a readable NPZ file: {reason}", path=path) from error
-    usual = max(
-        Counter(values.size for values in arrays.values()).items(), key=lambda pair: pair[::-1], default=(0,)
-    )[0]
+    usual = max((values.size for values in arrays.values()), default=0)
+    usual = arrays["time"].size if "time" in arrays else usual
     others = [f"{name} ({values.size})" for name, values in arrays.items() if values.size != usual]
     if others:
-        text = f"{path.name}: not of {usual} samples like most arrays, left out: {listing(others)}"
+        text = f"{path.name}: not of {usual} samples as the recording has, left out: {listing(others)}"
         notes.append(Note("array_length", "warning", text))
     return {name: values for name, values in arrays.items() if values.size == usual}
 
