@@ -74,13 +74,14 @@ def test_recordings_that_have_little_in_common_are_two() -> None:
         check_names([recording("one", a=gap), recording("copy", a=gap)])
 
 
-def test_what_is_no_log_or_no_robot_is_said_in_one_line() -> None:
+def test_what_is_no_log_or_no_robot_is_said_in_one_line(tmp_path: Path) -> None:
+    robot = make_robot(tmp_path)
     one = log("one")
-    assert list(logs_of(one, None)) == [one]  # type: ignore[arg-type]
-    assert list(logs_of([one], None)) == [one]  # type: ignore[arg-type]
+    assert list(logs_of(one, robot)) == [one]
+    assert list(logs_of([one], robot)) == [one]
     for wrong in (3, [3]):
         with pytest.raises(LogError, match="value 'int': is not a log"):
-            list(logs_of(wrong, None))  # type: ignore[arg-type]
+            list(logs_of(wrong, robot))  # type: ignore[arg-type]
     with pytest.raises(RobotError, match="is not a robot"):
         robot_of(3)  # type: ignore[arg-type]
 
