@@ -218,3 +218,23 @@ def test_a_sole_behind_a_sensor_is_cut_off_by_the_bush(target: str, urdf: Path, 
     parent = joint.find("parent")
     assert parent is not None
     assert (parent.get("link") or parent.text) == "left_bush_sole"
+
+
+@pytest.mark.parametrize("kind", ["fixed", "floating"])
+def test_a_urdf_that_hangs_on_the_world_is_the_same_in_sdf(
+    kind: str, feet: dict[str, Any], urdf: Path, tmp_path: Path
+) -> None:
+    export(feet, "sdf", tmp_path / "free.sdf", model=urdf)
+    root = ET.parse(urdf).getroot()
+    ends = {str(end.get("link")) for end in root.iterfind("joint/child")}
+    trunk = next(str(link.get("name")) for link in root.findall("link") if link.get("name") not in ends)
+    joint = f'<joint name="stand" type="{kind}"><parent link="world"/><child link="{trunk}"/></joint>'
+    (tmp_path / "world.urdf").write_text(
+        urdf.read_text().replace("</robot>", f'<link name="world"/>{joint}</robot>')
+    )
+    notes = export(feet, "sdf", tmp_path / "world.sdf", model=tmp_path / "world.urdf")
+    assert "export_world" in {note.code for note in notes}
+    free, hung = (
+        ET.tostring(ET.parse(tmp_path / f"{name}.sdf").getroot()) for name in ("free", "world")
+    )  # comments are not parsed
+    assert free == hung
