@@ -89,8 +89,8 @@ def fit_base_parameters(
         `.values`, `.std`, `.rank`, `.condition_number`, `.expressions` of the parameters, and `.predict(q, v, a)`.
 
     Raises:
-        RobotError: a joint type that is not supported. SettingsError: `rows` is neither. DataError: wrong shapes, values
-        that are not finite, or base rows asked of a model without free-flyer.
+        RobotError: a joint type that is not supported. SettingsError: `rows` is neither. DataError: wrong shapes,
+        values that are not finite, or base rows asked of a model without free-flyer.
 
     Example:
         >>> import numpy as np, pinocchio as pin

@@ -62,7 +62,7 @@ class MotionLog:
         left_out: spans of a longer recording (from, to) [s] whose rows are not here, since others tell more.
 
     Raises:
-        LogError: a column holds no numbers, lengths differ, time does not increase, or there are fewer than two samples.
+        LogError: a column holds no numbers, lengths differ, time does not increase, there are fewer than two samples.
 
     Example:
         >>> import numpy as np, plantar
