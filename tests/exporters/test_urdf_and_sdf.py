@@ -62,7 +62,11 @@ def test_a_model_whose_bush_lacks_an_axis_of_the_result_is_refused(
         with pytest.raises(ExportError, match="LLEG_BUSH_Z, which the result has not: it would move freely"):
             export(rigid, target, two, model=one)
     else:
-        export(rigid, target, two, model=one)  # as a robot's own model, whose slide stays as it is there
+        # As a robot's own model, whose slide stays as it is there, and that is told.
+        notes = export(rigid, target, two, model=one)
+        (told,) = [one for one in notes if one.code == "export_updated" and one.severity == "warning"]
+        assert told.text.startswith("left: ")
+        assert "but not those of LLEG_BUSH_Z, of which the result knows nothing" in told.text
 
 
 @pytest.mark.parametrize("version", ["1.5", "1.6", "1.9"])
