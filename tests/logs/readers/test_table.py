@@ -100,7 +100,7 @@ def test_dates_and_durations_are_seconds(
     np.testing.assert_allclose(open_log(tmp_path / "log.parquet").time, period * np.arange(5), atol=1e-12)
     wrong = pa.table({"time": np.arange(5.0), "joint.a.position": ticks})
     pa_parquet.write_table(wrong, tmp_path / "wrong.parquet")
-    with pytest.raises(LogError, match="column 'joint.a.position': holds "):
+    with pytest.raises(LogError, match=r"column 'joint\.a\.position': holds "):
         open_log(tmp_path / "wrong.parquet")
 
 
