@@ -90,7 +90,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/place/misread_joints.py", "a joint that is late is early",
-        "'late' if self.size > 0", "'late' if self.size < 0",
+        '("late", "early") if self.size > 0', '("late", "early") if self.size < 0',
         ("feet/place/test_misread_joints.py",),
     ),
     Mutant(
