@@ -152,6 +152,8 @@ class StreamObject {
 
 NB_MODULE(_core, m) {
   m.doc() = "plantar's native core";
+  // An error that ends a program keeps objects alive to its end; people read that one line, not a list of them.
+  nb::set_leak_warnings(false);
   m.def("instruction_sets", &instruction_sets, "The instruction sets that can run here, the one in use first.");
   nb::class_<TreeObject>(m, "Tree")
       .def(nb::init<const std::vector<int>&, const std::vector<bool>&, const std::vector<Packed>&,

@@ -25,7 +25,7 @@ from plantar.dynamics import (
 )
 from plantar.dynamics.fit import solve_triangle
 from plantar.dynamics.stream import stacked
-from plantar.errors import DataError, RobotError
+from plantar.errors import DataError, RobotError, SettingsError
 
 
 def measured(model: pin.Model, motion: tuple[Array, Array, Array], noise: float, seed: int) -> Array:
@@ -63,6 +63,13 @@ def test_values_and_deviations_are_those_of_the_stacked_problem(rows: str) -> No
     other = random_motion(model, 11, 2)
     expected = regressor(model, *other)[:, :taken][:, :, fit.base.kept] @ values
     np.testing.assert_allclose(fit.predict(*other), expected, rtol=1e-9, atol=1e-8)
+
+
+def test_rows_of_another_name_are_refused() -> None:
+    model = example_robots.model(example_robots.PANDA)
+    motion = random_motion(model, 3, 1)
+    with pytest.raises(SettingsError, match=r"value 'joints': rows is not a choice \(valid: base, all\)"):
+        fit_base_parameters(model, *motion, motion[1], rows="joints")  # type: ignore[arg-type]
 
 
 def test_badly_conditioned_samples_keep_the_accuracy_of_qr() -> None:

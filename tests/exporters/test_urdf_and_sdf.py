@@ -62,7 +62,11 @@ def test_a_model_whose_bush_lacks_an_axis_of_the_result_is_refused(
         with pytest.raises(ExportError, match="LLEG_BUSH_Z, which the result has not: it would move freely"):
             export(rigid, target, two, model=one)
     else:
-        export(rigid, target, two, model=one)  # as a robot's own model, whose slide stays as it is there
+        # As a robot's own model, whose slide stays as it is there, and that is told.
+        notes = export(rigid, target, two, model=one)
+        (told,) = [one for one in notes if one.code == "export_updated" and one.severity == "warning"]
+        assert told.text.startswith("left: ")
+        assert "but not those of LLEG_BUSH_Z, of which the result knows nothing" in told.text
 
 
 @pytest.mark.parametrize("version", ["1.5", "1.6", "1.9"])
@@ -240,3 +244,23 @@ def test_a_second_sdf_export_leaves_one_spring_in_each_joint(feet: dict[str, Any
     }
     assert springs["LLEG_BUSH_PITCH"] == [300.0]
     assert {name for name, found in springs.items() if len(found) > 1} == set()
+
+
+@pytest.mark.parametrize("kind", ["fixed", "floating"])
+def test_a_urdf_that_hangs_on_the_world_is_the_same_in_sdf(
+    kind: str, feet: dict[str, Any], urdf: Path, tmp_path: Path
+) -> None:
+    export(feet, "sdf", tmp_path / "free.sdf", model=urdf)
+    root = ET.parse(urdf).getroot()
+    ends = {str(end.get("link")) for end in root.iterfind("joint/child")}
+    trunk = next(str(link.get("name")) for link in root.findall("link") if link.get("name") not in ends)
+    joint = f'<joint name="stand" type="{kind}"><parent link="world"/><child link="{trunk}"/></joint>'
+    (tmp_path / "world.urdf").write_text(
+        urdf.read_text().replace("</robot>", f'<link name="world"/>{joint}</robot>')
+    )
+    notes = export(feet, "sdf", tmp_path / "world.sdf", model=tmp_path / "world.urdf")
+    assert "export_world" in {note.code for note in notes}
+    free, hung = (
+        ET.tostring(ET.parse(tmp_path / f"{name}.sdf").getroot()) for name in ("free", "world")
+    )  # comments are not parsed
+    assert free == hung

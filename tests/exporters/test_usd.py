@@ -47,6 +47,17 @@ def test_the_validators_of_usd_find_nothing(kind: str, tmp_path: Path) -> None:
     assert not [one.GetErrorAsString() for one in found]
 
 
+def test_a_foots_name_need_be_no_name_of_usd(tmp_path: Path) -> None:
+    made = result(write_urdf(tmp_path / "biped.urdf"))
+    made["robot_model"]["feet"]["left-foot 1"] = made["robot_model"]["feet"].pop("left")
+    for row in (*made["parameters"], *made["offsets"]):
+        row["foot"] = "left-foot 1" if row["foot"] == "left" else row["foot"]
+    export(made, "usd", tmp_path / "out.usda")
+    stage = stage_of(tmp_path / "out.usda")
+    names = {prim.GetName() for prim in stage.Traverse()}
+    assert {"left_foot_1", "left_foot_1_bush_pitch"} <= names
+
+
 def test_overs_leave_the_users_stage_as_it_is(tmp_path: Path) -> None:
     from pxr import UsdPhysics
 

@@ -56,6 +56,7 @@ def said(
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: left or {})
     monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: pair)
     monkeypatch.setattr(standing, "_turned_wrench", lambda *_: turned)
+    monkeypatch.setattr(standing, "torque_unit", lambda *_: ())
     found = list(standing.check_balance(None, None))  # type: ignore[arg-type]
     assert len(found) <= 1
     return found[0] if found else None

@@ -48,6 +48,16 @@ def test_one_recording_under_two_names_is_refused(copy: MotionLog) -> None:
             check_names(logs)
 
 
+def test_one_recording_with_other_columns_is_refused_where_force_sensors_read_the_same() -> None:
+    forces = {f"wrench.left.force.{axis}": SIGNALS[axis.replace("x", "a").replace("y", "b")] for axis in "xy"}
+    bare = MotionLog("bare", np.arange(600.0), forces | {"joint.a.position": SIGNALS["a"]})
+    more = MotionLog("more", np.arange(600.0) + 7, forces | {"joint.b.position": SIGNALS["b"]})
+    for logs in ([bare, more], [more, bare]):
+        with pytest.raises(DataError, match="hold the same recording"):
+            check_names(logs)
+    check_names([recording("plan", extra=SIGNALS["a"]), recording("the same plan")])
+
+
 def test_recordings_that_overlap_by_more_than_half_of_the_shorter_are_one() -> None:
     check_names([recording("one", slice(0, 400)), recording("two", slice(250, 600))])
     with pytest.raises(DataError, match="hold the same recording, or most of one"):
@@ -64,13 +74,14 @@ def test_recordings_that_have_little_in_common_are_two() -> None:
         check_names([recording("one", a=gap), recording("copy", a=gap)])
 
 
-def test_what_is_no_log_or_no_robot_is_said_in_one_line() -> None:
+def test_what_is_no_log_or_no_robot_is_said_in_one_line(tmp_path: Path) -> None:
+    robot = make_robot(tmp_path)
     one = log("one")
-    assert list(logs_of(one, None)) == [one]  # type: ignore[arg-type]
-    assert list(logs_of([one], None)) == [one]  # type: ignore[arg-type]
+    assert list(logs_of(one, robot)) == [one]
+    assert list(logs_of([one], robot)) == [one]
     for wrong in (3, [3]):
         with pytest.raises(LogError, match="value 'int': is not a log"):
-            list(logs_of(wrong, None))  # type: ignore[arg-type]
+            list(logs_of(wrong, robot))  # type: ignore[arg-type]
     with pytest.raises(RobotError, match="is not a robot"):
         robot_of(3)  # type: ignore[arg-type]
 

@@ -46,6 +46,15 @@ def test_values_become_float64() -> None:
     assert log.time.dtype == log.column("joint.a.position").dtype == np.float64
 
 
+def test_texts_are_no_numbers() -> None:
+    with pytest.raises(
+        LogError, match=r"tilt, column 'joint\.a\.position': holds no numbers: could not convert"
+    ):
+        MotionLog("tilt", np.arange(2.0), {"joint.a.position": np.array(["1", "on"])})
+    with pytest.raises(LogError, match="tilt, column 'time': holds no numbers"):
+        MotionLog("tilt", ["a", "b"], {})  # type: ignore[arg-type]
+
+
 def test_lengths_and_time_are_checked() -> None:
     with pytest.raises(LogError, match=r"tilt, column 'joint\.a\.position': has 2 values where time has 3"):
         make(joint__a__position=[1.0, 2.0])

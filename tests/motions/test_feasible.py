@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -58,3 +59,15 @@ def test_a_knee_that_cannot_hold_the_squat_is_named_with_its_torque() -> None:
         for pattern in (r"t = ([\d.]+) s", r"needs ([\d.]+)")
     )
     assert needs == pytest.approx(abs(held_up(int(np.searchsorted(squat.time, time - 1e-6)))), rel=0.03)
+
+
+def test_legs_whose_joints_follow_others_are_refused() -> None:
+    """The inverse kinematics would move them by themselves, as no such robot can."""
+    robot = hrp2.robot()
+    knee = '<joint name="LLEG_JOINT3" type="revolute">'
+    assert knee in robot.urdf
+    bound = replace(
+        robot, urdf=robot.urdf.replace(knee, f'{knee}<mimic joint="LLEG_JOINT4" multiplier="-2"/>')
+    )
+    with pytest.raises(MotionError, match=r"not for LLEG_JOINT3 \(valid: legs without <mimic>\)"):
+        Body(bound)

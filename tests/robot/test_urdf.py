@@ -9,7 +9,7 @@ import pytest
 from biped_robot import write_robot
 from plantar.errors import RobotError
 from plantar.robot.model import load_robot
-from plantar.robot.urdf import parse_urdf, read_urdf
+from plantar.robot.urdf import following_joints, parse_urdf, read_urdf
 
 PLAIN = """<robot name="r">
   <link name="trunk"><inertial><origin xyz="0 0 .1"/><mass value="1e1"/>
@@ -107,3 +107,17 @@ def test_a_robot_without_weight_is_refused(tmp_path: Path) -> None:
     urdf.write_text(urdf.read_text().replace("<inertial>", "<!--").replace("</inertial>", "-->"))
     with pytest.raises(RobotError, match="its links weigh nothing"):
         load_robot(path)
+
+
+def test_joints_that_follow_others_follow_one_that_follows_none() -> None:
+    text = """<robot name="r"><joint name="a"/>
+      <joint name="b"><mimic joint="a" multiplier="-2" offset="0.1"/></joint>
+      <joint name="c"><mimic joint="b" multiplier="3" offset="0.5"/></joint>
+      <joint name="d"><mimic joint="e"/></joint><joint name="e"><mimic joint="d"/></joint></robot>"""
+    assert following_joints(text) == {"b": ("a", -2.0, 0.1), "c": ("a", -6.0, pytest.approx(0.8))}
+    assert not following_joints(PLAIN)
+
+
+def test_a_factor_that_is_no_number_is_named() -> None:
+    told = refusal("<limit", '<mimic joint="x" multiplier="-1,5"/><limit')
+    assert "value '-1,5': multiplier of <mimic> in joint 'ankle' (valid: a number)" in told

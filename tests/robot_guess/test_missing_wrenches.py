@@ -13,6 +13,7 @@ from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.robot.schema import read_robot_file
 from plantar.robot_guess import guess_robot_file
+from plantar.robot_guess.sensors import Sensors, sensor_of
 
 LEFT, RIGHT = wrench_columns("left"), wrench_columns("right")
 EVERY_LEFT, EVERY_RIGHT = "columns 'wrench.left.*'", "columns 'wrench.right.*'"
@@ -67,3 +68,28 @@ def test_the_logs_that_are_whole_are_looked_at_all_the_same(whole: MotionLog, tm
     beside = [line for line in both if "DOUBT: thin: " not in line]
     assert len(beside) == len(both) - 1
     assert beside[1:] == alone[1:]  # but for the number of logs
+
+
+def test_joints_that_mimic_others_need_not_be_recorded(whole: MotionLog, tmp_path: Path) -> None:
+    """An ankle that a linkage turns like another joint, of which the log knows nothing."""
+    make_robot(tmp_path)
+    urdf = tmp_path / "biped.urdf"
+    mimic = '<mimic joint="right_ankle_roll" multiplier="0.5"/>'
+    ankle = '<joint name="left_ankle_roll" type="revolute">'
+    urdf.write_text(urdf.read_text().replace(ankle, ankle + mimic))
+    followed = 0.5 * whole.column("joint.right_ankle_roll.position")
+    linked = whole.with_columns({"joint.left_ankle_roll.position": followed})
+    texts = []
+    for log in (linked, without(linked, "joint.left_ankle_roll.position", "joint.left_ankle_roll.velocity")):
+        path = tmp_path / "linked.csv"
+        save_log(log, path)
+        texts.append(guess_robot_file(urdf, [path], tmp_path / "guessed.yaml"))
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize(
+    ("left", "right"), [("ftL", "ftR"), ("f_l", "f_r"), ("LFsensor", "RFsensor"), ("Ati-L-6", "Ati-R-6")]
+)
+def test_a_letter_in_a_sensors_name_says_which_foot_it_is_of(left: str, right: str) -> None:
+    sensors = Sensors(wrenches={right: "", left: ""})
+    assert [sensor_of(side, sensors, []) for side in ("left", "right")] == [left, right]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from plantar.logs.motion_log import MotionLog
 from plantar.signals.held import (
@@ -79,6 +80,22 @@ def test_a_level_quaternions_first_number_is_not_held() -> None:
     assert (level[:400] == 1).all()
     log = MotionLog("level", TIME, {"imu.chest.orientation.w": level})
     assert without_held(log) is log
+
+
+@pytest.mark.parametrize("mount", [(0.0, 0.0, 0.0), (np.pi, 0.0, 0.3)])
+def test_an_orientation_is_held_as_a_whole(mount: tuple[float, float, float]) -> None:
+    """In whatever way the IMU is mounted: small leans leave the numbers that are large where they are."""
+    lean = np.where(TIME < 3, 2e-4, 0.1) * np.sin(3 * TIME)
+    leans = Rotation.from_euler("zy", np.column_stack([np.full_like(lean, 0.4), lean]))
+    names = [f"imu.chest.orientation.{axis}" for axis in "xyzw"]
+    numbers = (leans * Rotation.from_euler("xyz", mount)).as_quat().round(7)
+    log = MotionLog("leans", TIME, dict(zip(names, numbers.T, strict=True)))
+    assert any(held_samples(part, PERIOD, full_scale=False).any() for part in numbers.T)
+    assert without_held(log) is log
+    still = (TIME > 5) & (TIME < 6)
+    numbers[still] = numbers[still][0]
+    emptied = without_held(MotionLog("frozen", TIME, dict(zip(names, numbers.T, strict=True))))
+    assert np.isnan(emptied.stack(names)).any(axis=1)[still].all()
 
 
 @pytest.mark.parametrize(("share", "held"), [(0.95, True), (0.85, False)])

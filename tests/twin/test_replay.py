@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from biped import record, sway
+from biped_robot import Frame, Mounting, make_robot
 from plantar.errors import PlantarError
 from plantar.results.feet import AxisModel, FeetResult, Parameter
 from plantar.results.feet_rows import LinearEquivalent
 from plantar.robot.model import RobotModel
-from plantar.twin.replay import feet_of, plan_of
+from plantar.twin.replay import chest_attitude, feet_of, pitch_and_roll, plan_of
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.simulation.mjcf import SERVO_ANGLE
 
@@ -75,3 +77,16 @@ def test_a_servo_that_gives_is_told_to_go_further(robot: RobotModel) -> None:
     place = robot.joint_names.index(joint)
     np.testing.assert_allclose((plans[1] - plans[0])[:, place], 0.5 * SERVO_ANGLE, rtol=1e-6)
     assert not np.delete(plans[1] - plans[0], place, axis=1).any()
+
+
+@pytest.mark.parametrize("rpy", [(np.pi, 0.0, 0.3), (0.0, np.pi / 2, 0.0), (0.2, -0.1, 2.0)])
+def test_pitch_and_roll_are_the_robots_however_the_imu_is_mounted(
+    rpy: tuple[float, float, float], robot: RobotModel, tmp_path: Path
+) -> None:
+    """Upside down roll turned over at 180 degrees, and on its side pitch and roll were none."""
+    usual = pitch_and_roll(chest_attitude(robot, record(sway()))[:, 2, :])
+    turned = Mounting(imu=Frame(rpy=rpy))
+    mounted = make_robot(tmp_path, turned)
+    found = pitch_and_roll(chest_attitude(mounted, record(sway(), turned))[:, 2, :])
+    np.testing.assert_allclose(found, usual, atol=1e-9)
+    assert 0.01 < np.abs(usual).max() < 0.3

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 import pinocchio as pin
 
 from plantar import _core
+from plantar.choices import one_of
 from plantar.conventions import Array
 from plantar.dynamics.base_parameters import BaseParameters, base_parameters
 from plantar.dynamics.equation import BASE_ROWS, Equation
@@ -88,8 +89,8 @@ def fit_base_parameters(
         `.values`, `.std`, `.rank`, `.condition_number`, `.expressions` of the parameters, and `.predict(q, v, a)`.
 
     Raises:
-        RobotError: a joint type that is not supported. DataError: wrong shapes, values that are not finite, or base
-        rows asked of a model without free-flyer.
+        RobotError: a joint type that is not supported. SettingsError: `rows` is neither. DataError: wrong shapes,
+        values that are not finite, or base rows asked of a model without free-flyer.
 
     Example:
         >>> import numpy as np, pinocchio as pin
@@ -130,6 +131,7 @@ def fit_base_parameters_chunked(
         >>> dynamics.fit_base_parameters_chunked(model, chunks, rows="all").samples
         150
     """
+    one_of("rows", rows, get_args(Rows))
     equation = Equation(model)
     if rows == "base" and not equation.floating:
         raise DataError("base rows need a free-flyer at the root (valid: rows='all' for a fixed base)")

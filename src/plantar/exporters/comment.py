@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import Any, Final
 
-from plantar.conventions import Axis
+from plantar.conventions import AXES, Axis
 from plantar.exporters.bush import FootBush
 from plantar.notes import Note
 
@@ -66,10 +66,14 @@ def moved_note(foot: FootBush, moved: Iterable[str]) -> Note:
     )
 
 
-def updated_note(foot: FootBush) -> Note:
-    return Note(
-        "export_updated", "info", f"{foot.name}: the model has the bush joints; their values are updated"
-    )
+def updated_note(foot: FootBush, joints: Container[str]) -> Note:
+    """joints: the model's names of them."""
+    kept = [name for axis in AXES if not foot.spring(axis) and (name := foot.joint(axis)) in joints]
+    text = f"{foot.name}: the model has the bush joints; their values are updated"
+    if not kept:
+        return Note("export_updated", "info", text)
+    text += f", but not those of {', '.join(kept)}, of which the result knows nothing: they stay as they were"
+    return Note("export_updated", "warning", text)
 
 
 def plate_note(foot: FootBush) -> Note:

@@ -10,6 +10,7 @@ import numpy as np
 
 from plantar.faults.joints.names import legs
 from plantar.faults.stance import Stance, StanceSides, stance_of, usual
+from plantar.faults.torque_unit import torque_unit
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
@@ -51,6 +52,9 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if stance is None:
         return
     sides = stance.sides()
+    if found := list(torque_unit(robot, sides.moment_arms)):
+        yield from found
+        return
     as_is = sides.misfit
     if as_is <= NOTABLE and sides.lean <= LEANING:
         yield from _turned(stance, sides)

@@ -230,10 +230,11 @@ def _recordings(
     def told(
         recording: Recording, residual: NewtonEulerResidual | None
     ) -> MomentErrors | tuple[Recording, Heights | None]:
+        return_freed()  # moments take much of any log, and what one process has freed is of no use to the others
         if residual is not None:
             return moment_errors(robot, residual, has_steps(recording))
         flat = without_slip(robot, recording)
-        return_freed(recording.log.size)  # its moments still take more
+        return_freed(recording.log.size)
         return flat, heights_of(robot, flat) if recording.role == "fit" else None
 
     with over_logs([look.log for look in looks]) as each:

@@ -19,6 +19,7 @@ from plantar.errors import DataError, LogError, NoRoom, RobotError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import of_robot, open_log, reads_alike
 from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
+from plantar.logs.readers.urdf_names import with_following_joints
 from plantar.logs.stretches import LONGEST
 
 if TYPE_CHECKING:
@@ -178,13 +179,17 @@ def check_names(logs: Sequence[MotionLog]) -> None:
 
 
 def _same_recording(log: MotionLog, other: MotionLog) -> bool:
-    """Whether most of the shorter log's samples are samples of the longer one, which has the same columns: as they are,
-    cut, thinned, or on another clock."""
+    """Whether most of the shorter log's samples are samples of the longer one: as they are, cut, thinned, on another
+    clock, or with other columns beside the same force sensors: joints alone may do the same twice."""
     short, long = sorted((log, other), key=len)
-    if not short.columns or not len(short) or short.columns.keys() != long.columns.keys():
+    shared = sorted(short.columns.keys() & long.columns.keys())
+    measured = short.columns.keys() == long.columns.keys() or any(
+        name.startswith("wrench.") for name in shared
+    )
+    if not shared or not len(short) or not measured:
         return False
     probes = np.linspace(0, len(short) - 1, PROBES).astype(int)
-    told = {name: values[probes] for name, values in short.columns.items()}
+    told = {name: short.columns[name][probes] for name in shared}
     finest = max(told, key=lambda name: len(np.unique(told[name])))
     alike = np.isin(long.columns[finest], np.unique(told[finest]))
     asked, there = (
@@ -209,7 +214,7 @@ def _largest(path: Path) -> float:
 
 def _log_of(log: LogInput, robot: RobotModel, longest: float) -> MotionLog:
     if isinstance(log, MotionLog):
-        return log.without_empty_joints()
+        return with_following_joints(log.without_empty_joints(), robot.following_joints)
     if isinstance(log, str | os.PathLike):
         return open_log(log, robot, longest=longest)
     raise _no_log(log)

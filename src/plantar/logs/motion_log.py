@@ -62,7 +62,7 @@ class MotionLog:
         left_out: spans of a longer recording (from, to) [s] whose rows are not here, since others tell more.
 
     Raises:
-        LogError: lengths differ, time does not increase, or there are fewer than two samples.
+        LogError: a column holds no numbers, lengths differ, time does not increase, there are fewer than two samples.
 
     Example:
         >>> import numpy as np, plantar
@@ -81,8 +81,8 @@ class MotionLog:
     left_out: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        time = _frozen(self.time)
-        columns = {name: _frozen(values) for name, values in self.columns.items()}
+        time = self._numbers("time", self.time)
+        columns = {name: self._numbers(name, values) for name, values in self.columns.items()}
         absurd = [name for name, values in columns.items() if (np.abs(values) > LARGEST).any()]
         for name in absurd:
             columns[name] = _frozen(np.where(np.abs(columns[name]) > LARGEST, np.nan, columns[name]))
@@ -104,6 +104,12 @@ class MotionLog:
             raise LogError(message, path=self.source, column="time", time=float(at), value=float(value))
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "columns", MappingProxyType(columns))
+
+    def _numbers(self, name: str, values: Array) -> Array:
+        try:
+            return _frozen(values)
+        except (TypeError, ValueError) as error:
+            raise LogError(f"holds no numbers: {error}", path=self.source, column=name) from error
 
     @property
     def source(self) -> str:

@@ -14,6 +14,7 @@ from pink.tasks import ComTask, FrameTask, PostureTask, Task
 
 from plantar.conventions import Array
 from plantar.errors import MotionError
+from plantar.notes import listing
 from plantar.robot.model import Placement, RobotModel
 
 CHEST = "plantar.chest"
@@ -25,13 +26,17 @@ class Body:
     """A robot with a floating base and frames on its soles and chest.
 
     The chest is the link that carries the IMU; its frame there has the robot's axes, x forward and z up, when every
-    joint is at neutral. Raises MotionError where the robot has no IMU or fewer than two feet.
+    joint is at neutral. Raises MotionError where the robot has no IMU, fewer than two feet, or legs with joints that
+    follow others.
     """
 
     def __init__(self, robot: RobotModel) -> None:
         if robot.imu is None or set(robot.feet) != {"left", "right"}:
             message = "motions are planned for a left and a right foot and a chest that carries an IMU"
             raise MotionError(message, path=robot.path, valid="a robot file with imu, left and right")
+        if bound := sorted(robot.path_joints & robot.following_joints.keys()):
+            message = f"motions are planned for joints that move by themselves, not for {listing(bound)}"
+            raise MotionError(message, path=robot.urdf_path, valid="legs without <mimic>")
         self.robot = robot
         self.model = robot.floating_model.copy()
         self.chest_link = robot.imu.placement.link

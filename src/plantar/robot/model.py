@@ -21,7 +21,7 @@ from plantar.robot.joint_names import JointNames
 from plantar.robot.kinematics import KinematicTree
 from plantar.robot.schema import Entry, read_robot_file
 from plantar.robot.uncertainty import Uncertainty
-from plantar.robot.urdf import parse_urdf, read_urdf, unknown_link
+from plantar.robot.urdf import following_joints, parse_urdf, read_urdf, unknown_link
 from plantar.robot.weighed import check_weight, of_mass, weight_notes, weight_of
 
 
@@ -140,6 +140,11 @@ class RobotModel:
     def joint_names(self) -> tuple[str, ...]:
         """The movable joints in the order of `model`."""
         return tuple(self.model.names)[1:]
+
+    @cached_property
+    def following_joints(self) -> dict[str, tuple[str, float, float]]:
+        """Of each joint that mimics another: the one it follows in the end, the factor and the offset [rad]."""
+        return following_joints(self.urdf)
 
     @cached_property
     def mass(self) -> float:

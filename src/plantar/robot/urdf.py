@@ -47,6 +47,25 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
         raise RobotError(f"is not a readable URDF: {reason}", path=path) from error
 
 
+def following_joints(urdf: str) -> dict[str, tuple[str, float, float]]:
+    """Of each joint with <mimic>: the joint that it follows, which follows none, the factor and the offset [rad]."""
+    if "<mimic" not in urdf:
+        return {}
+    named = {str(joint.get("name")): joint.find("mimic") for joint in ET.fromstring(urdf).iterfind("joint")}
+    found = {}
+    for name in named:
+        leader, factor, offset = name, 1.0, 0.0
+        for _ in named:
+            if (mimic := named.get(leader)) is None:
+                break
+            offset += factor * float(mimic.get("offset", 0))
+            factor *= float(mimic.get("multiplier", 1))
+            leader = str(mimic.get("joint"))
+        if leader != name and named.get(leader) is None:  # else they follow each other in a circle
+            found[name] = (leader, factor, offset)
+    return found
+
+
 def unknown_link(link: str, model: pin.Model, path: Path) -> RobotError:
     """One line that names an unknown link and what may have been meant."""
     names = [frame.name for frame in model.frames]
@@ -114,6 +133,8 @@ def _numbers(root: ET.Element) -> Iterator[tuple[ET.Element, ET.Element, str, in
                 yield owner, element, "rpy", 3
             elif element.tag == "mass":
                 yield owner, element, "value", 1
+            elif element.tag == "mimic":
+                yield from ((owner, element, key, 1) for key in ("multiplier", "offset"))
             elif element.tag == "inertia":
                 yield from ((owner, element, key, 1) for key in INERTIA)
 

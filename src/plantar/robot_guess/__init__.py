@@ -22,11 +22,11 @@ from plantar.faults.joints.names import check_joint_names, recorded_joints
 from plantar.faults.log_faults import check_log
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog, wrench_columns
-from plantar.logs.readers.urdf_names import with_urdf_names
+from plantar.logs.readers.urdf_names import with_following_joints, with_urdf_names
 from plantar.notes import Finding
 from plantar.robot.joint_names import JointNames, propose_names, propose_order
 from plantar.robot.model import RobotModel, load_robot
-from plantar.robot.urdf import parse_urdf, read_urdf
+from plantar.robot.urdf import following_joints, parse_urdf, read_urdf
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.bush import bush_shift
 from plantar.robot_guess.column_map import read_column_map
@@ -49,7 +49,8 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
 
     Raises RobotError where the URDF is unreadable or no biped, LogError where a log is, or is of another robot.
     """
-    model = parse_urdf(read_urdf(urdf), urdf, floating=False)
+    text = read_urdf(urdf)
+    model = parse_urdf(text, urdf, floating=False)
     tree = UrdfTree.load(urdf)
     biped = find_biped(tree, model)
     soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
@@ -62,6 +63,7 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
     sensors = look_at(logs, reading)
     draft = _first_draft(tree, soles, sensors, urdf)
     draft, recordings = _with_names(draft, tuple(model.names)[1:], sensors.logs)
+    recordings = [with_following_joints(log, following_joints(text)) for log in recordings]
     if recordings:
         _refuse_other_robot(draft, urdf, recordings)
         whole = [log for log in recordings if not _missing(draft, log)]

@@ -10,6 +10,7 @@ from pathlib import Path
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.readers.ros.bag import bag_topics
+from plantar.robot.joint_names import words_of
 from plantar.robot.model import RobotModel
 from plantar.robot_guess.biped import LEFT, RIGHT
 
@@ -61,11 +62,14 @@ def sensor_of(side: str, sensors: Sensors, on_foot: Sequence[str]) -> str | None
     free = [name for name in free if not re.search("hand|arm|wrist|elbow", name, re.I)] or free
     initial = side[0]
     patterns = (rf"{side}.*(foot|ankle|sole|leg)|(foot|ankle|sole|leg).*{side}", side,
-                rf"^{initial}_?(foot|leg|ankle|sole)|^{initial}f|{initial}leg|(^|_){initial}(_|$)")  # fmt: skip
+                rf"^{initial}_?(foot|leg|ankle|sole)|^{initial}f|{initial}leg")  # fmt: skip
     for pattern in patterns:
         for name in free:
             if re.search(pattern, name, re.I):
                 return name
+    worded = [name for name in free if side in words_of(name)]
+    if worded:
+        return worded[0]
     return free[0] if len(free) == 1 and len(sensors.wrenches) == 1 else None
 
 

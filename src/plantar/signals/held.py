@@ -14,6 +14,7 @@ from plantar.signals.segments import runs
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
 LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
 NOTABLE = 0.005  # share of the log
+BEYOND_ROUNDING = 3.0  # times what a quaternion's length is usually off by: a number of it is wrong
 ONE_STEP = 1.5  # of a scale's steps: a usual change that is smaller is one of them
 
 
@@ -68,7 +69,26 @@ def held_in(log: MotionLog, column: str) -> Mask:
     held = held_samples(log.column(column), log.period, full_scale=".orientation." not in column)
     if held.any() and column.startswith("wrench."):
         held &= ~_untouched(log, device_of(column))
+    if held.any() and ".orientation." in column:
+        held &= _unlike_unit(log, column, held)
     return held
+
+
+def _unlike_unit(log: MotionLog, column: str, held: Mask) -> Mask:
+    """Samples (N,) at which a quaternion's number that is `held` fits no unit quaternion, or all others stopped too.
+
+    A small turn, or one about one axis, leaves some of its numbers where they are.
+    """
+    stem = column.rpartition(".")[0]
+    parts = [log.column(f"{stem}.{axis}") for axis in "wxyz"]
+    off = np.abs(sum(part**2 for part in parts) - 1)
+    if np.nanmedian(off[held]) > BEYOND_ROUNDING * np.nanmedian(off[~held]):
+        return held
+    largest = max(range(4), key=lambda place: float(np.nanmedian(np.abs(parts[place]))))
+    others = [
+        held_samples(part, log.period, full_scale=False) for part in parts[:largest] + parts[largest + 1 :]
+    ]
+    return np.asarray(np.logical_and.reduce(others))  # the largest, near 1, hardly ever changes
 
 
 def _untouched(log: MotionLog, sensor: str) -> Mask:

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 from scipy.signal import detrend
+from scipy.spatial.transform import Rotation
 
 from plantar.contact.balance import LOADED, flat_soles, soles_in_root
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, rotation_from_quaternion
@@ -83,11 +84,16 @@ def pitch_and_roll(up: Array) -> Array:
 
 
 def chest_attitude(robot: RobotModel, log: MotionLog) -> Array:
-    """The IMU's attitude, body to world, (N, 3, 3). Raises DataError where the log has none."""
+    """The attitude of the IMU's link, body to world, (N, 3, 3); its axes are the soles' at the first sample, however
+    IMU and link are turned. Raises DataError where the log has none."""
     quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
-    if quaternions is None:
+    if robot.imu is None or quaternions is None:
         raise DataError("holds no attitude to compare with", path=log.source)
-    return rotation_from_quaternion(quaternions)
+    first = log.positions(robot)[:1]
+    joint, imu = robot.frame(robot.imu.placement)
+    mount = robot.tree.poses(first)[0][joint, 0] @ imu.rotation
+    soles = Rotation.from_matrix([pose[:3, :3] for pose in soles_in_root(robot, first[0]).values()]).mean()
+    return np.asarray(rotation_from_quaternion(quaternions) @ mount.T @ soles.as_matrix())
 
 
 def replay(

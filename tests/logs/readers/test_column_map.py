@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from biped_robot import make_robot
 from plantar.errors import LogError
-from plantar.logs.readers import open_log
+from plantar.logs.readers import open_log, text_numbers
 from plantar.logs.readers.column_map import apply
 from plantar.robot.model import RobotModel
 
@@ -148,3 +148,50 @@ def test_units_and_signs_of_a_map_are_taken(tmp_path: Path) -> None:
     np.testing.assert_allclose(found["joint.neck.position"], -np.radians(values))
     for place, axis in enumerate("xyz", start=1):
         np.testing.assert_allclose(found[f"imu.chest.angular_velocity.{axis}"], -np.radians(place * values))
+
+
+def test_arrays_of_an_npz_that_are_no_columns_are_left_out(tmp_path: Path) -> None:
+    """A gain, a list of settings or a transposed table beside the recording."""
+    time = np.arange(5.0)
+    np.savez(
+        tmp_path / "log.npz", time=time, gains=np.ones(7), wide=np.ones((3, 9)), **{"joint.a.position": time}
+    )
+    log = open_log(tmp_path / "log.npz")
+    assert list(log.columns) == ["joint.a.position"]
+    (note,) = [one for one in log.notes if one.code == "array_length"]
+    assert note.text.startswith(
+        "log.npz: not of 5 samples as the recording has, left out: gains (7), wide.0 (3)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("time;joint.a.position\n0,0;1,5\n0,1;1,25e-2\n", "0,0;1,5"),
+        ("0,0 1,5 7\n0,1 1,6 7\n", "0,0 1,5 7"),
+        ("0\t1\n1\t1,6\n", "1 1,6"),
+    ],
+)
+def test_decimal_commas_are_named(text: str, shown: str, tmp_path: Path) -> None:
+    (tmp_path / "log.txt").write_text(text)
+    with pytest.raises(LogError, match="has decimal commas") as caught:
+        open_log(tmp_path / "log.txt")
+    assert f"'{shown}' (valid: decimal points)" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["time,joint.a.position\n0,1\n1,2\n", "time, joint.a.position\n0, 1\n1, 2\n"]
+)
+def test_commas_between_whole_numbers_part_them(text: str, tmp_path: Path) -> None:
+    (tmp_path / "log.txt").write_text(text)
+    np.testing.assert_array_equal(open_log(tmp_path / "log.txt").column("joint.a.position"), [1.0, 2.0])
+
+
+def test_a_file_that_cannot_be_opened_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    (tmp_path / "log.txt").write_text("time,joint.a.position\n0,1\n1,2\n")
+    monkeypatch.setattr(text_numbers, "open", refuse, raising=False)
+    with pytest.raises(LogError, match=r"log\.txt: cannot be read: Permission denied"):
+        open_log(tmp_path / "log.txt")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import os
+from collections.abc import Callable
 from pathlib import Path
 from threading import Barrier
 
@@ -85,6 +86,22 @@ def test_nanoseconds_since_1970_are_numbers(tmp_path: Path) -> None:
     robot = make_robot(tmp_path / "robot", columns={"time": {"from": "stamp", "unit": "ns"}})
     log = open_log(tmp_path / "log.parquet", robot)
     np.testing.assert_allclose(log.time - 1.7e9, 0.123456789 + 0.01 * np.arange(5), atol=1e-6)
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
+@pytest.mark.parametrize("kind", [pa.timestamp, pa.duration])
+def test_dates_and_durations_are_seconds(
+    kind: Callable[[str], pa.DataType], unit: str, tmp_path: Path
+) -> None:
+    ticks = pa.array(np.arange(5) * {"s": 1, "ms": 10, "us": 10**4, "ns": 10**7}[unit]).cast(kind(unit))
+    table = pa.table({"time": ticks, "joint.a.position": np.arange(5.0)})
+    pa_parquet.write_table(table, tmp_path / "log.parquet")
+    period = 1.0 if unit == "s" else 0.01
+    np.testing.assert_allclose(open_log(tmp_path / "log.parquet").time, period * np.arange(5), atol=1e-12)
+    wrong = pa.table({"time": np.arange(5.0), "joint.a.position": ticks})
+    pa_parquet.write_table(wrong, tmp_path / "wrong.parquet")
+    with pytest.raises(LogError, match=r"column 'joint\.a\.position': holds "):
+        open_log(tmp_path / "wrong.parquet")
 
 
 @pytest.mark.parametrize("hole", ["", "nan", "NaN", "null"])

@@ -68,7 +68,7 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: Notes) ->
     if earlier := earlier_joints(foot, joints, before.path):
         for spring, joint in earlier:
             _set_spring(joint, spring, before.degrees)
-        notes.append(updated_note(foot))
+        notes.append(updated_note(foot, joints))
         return
     if before.has_body(foot.sole_link):
         raise ExportError(f"the model already has a body '{foot.sole_link}'", valid="a model without bushes")

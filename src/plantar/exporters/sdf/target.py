@@ -54,7 +54,7 @@ def insert_bushes(job: Job, notes: Notes, *, springs: bool, meshes: Collection[s
         if earlier := earlier_joints(foot, tree.joints, tree.path):
             for spring, joint in earlier:
                 _dynamics(joint, spring if springs else None)
-            notes.append(updated_note(foot))
+            notes.append(updated_note(foot, tree.joints))
             continue
         _insert(tree, foot, notes, springs)
     return tree

@@ -51,7 +51,7 @@ def insert_bushes(tree: UrdfTree, feet: tuple[FootBush, ...], notes: Notes) -> N
         if earlier := earlier_joints(foot, tree.joints, tree.path):
             for spring, joint in earlier:
                 _dynamics(joint, spring)
-            notes.append(updated_note(foot))
+            notes.append(updated_note(foot, tree.joints))
             continue
         bush = pose(foot.centre, rotation=foot.rotation)
         sole = _add_chain(tree, foot, bush)

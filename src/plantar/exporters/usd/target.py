@@ -55,9 +55,8 @@ def _foot(foot: FootBush) -> str:
         child = identifier(foot.link(spring.axis))
         last = spring is foot.springs[-1]
         parts.append(_link(child, foot.centre, quaternion(foot.rotation), _plate(foot) if last else ""))
-        parts.append(
-            _joint(foot.joint(spring.axis), spring, f"{path}/{parent}", f"{path}/{child}", place, turn)
-        )
+        joint = identifier(foot.joint(spring.axis))
+        parts.append(_joint(joint, spring, f"{path}/{parent}", f"{path}/{child}", place, turn))
         parent, place, turn = child, np.zeros(3), (1.0, 0.0, 0.0, 0.0)
     return f'def Xform "{name}"\n{{\n{_indent("".join(parts))}}}\n'
 

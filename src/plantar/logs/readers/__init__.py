@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
-from plantar.logs.readers.urdf_names import with_urdf_names
+from plantar.logs.readers.urdf_names import with_following_joints, with_urdf_names
 
 if TYPE_CHECKING:
     from plantar.logs.motion_log import MotionLog
@@ -82,14 +82,20 @@ def open_log(
         raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
-    with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
-        log = reader(path, robot, ReadLimit(path, memory, longest=longest))
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
+            log = reader(path, robot, ReadLimit(path, memory, longest=longest))
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", path=path) from error
     return of_robot(log.without_empty_joints(), robot)
 
 
 def of_robot(log: MotionLog, robot: RobotModel | None) -> MotionLog:
     """A log as `open_log` gives it, from one that was read without the robot where `reads_alike`."""
-    return log if robot is None else with_urdf_names(log, robot.joint_names_in_logs, robot.joint_names)
+    if robot is None:
+        return log
+    named = with_urdf_names(log, robot.joint_names_in_logs, robot.joint_names)
+    return with_following_joints(named, robot.following_joints)
 
 
 def reads_alike(path: Path, robot: RobotModel) -> bool:

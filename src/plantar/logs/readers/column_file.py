@@ -21,7 +21,7 @@ from plantar.logs.readers.read_limit import COLUMNS, NUMBER, ReadLimit
 from plantar.logs.readers.streams import Stream, increasing
 from plantar.logs.readers.tables import table
 from plantar.logs.readers.text_numbers import read_numbers
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
@@ -85,12 +85,13 @@ def _read_npz(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Arra
     except BROKEN as error:
         reason = " ".join(str(error).split())[:120]
         raise LogError(f"is not a readable NPZ file: {reason}", path=path) from error
-    lengths = {values.size for values in arrays.values()}
-    if len(lengths) > 1:
-        odd = next(name for name, values in arrays.items() if values.size == min(lengths))
-        message = f"arrays have different lengths, from {min(lengths)} to {max(lengths)}"
-        raise LogError(message, path=path, column=odd)
-    return arrays
+    usual = max((values.size for values in arrays.values()), default=0)
+    usual = arrays["time"].size if "time" in arrays else usual
+    others = [f"{name} ({values.size})" for name, values in arrays.items() if values.size != usual]
+    if others:
+        text = f"{path.name}: not of {usual} samples as the recording has, left out: {listing(others)}"
+        notes.append(Note("array_length", "warning", text))
+    return {name: values for name, values in arrays.items() if values.size == usual}
 
 
 def _by_column(name: str, array: Array | None) -> dict[str, Array]:

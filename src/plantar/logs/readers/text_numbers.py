@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,8 @@ from plantar.notes import Note
 
 BLOCK = 8 * 2**20  # bytes parsed at a time
 BAD_LINES = 0.01  # share of lines of another length before the file is refused
+HEAD = 2**16  # bytes in which decimal commas show
+DECIMAL_COMMA = re.compile(rb"[-+]?\d+,\d+([eE][-+]?\d+)?")
 COMMENT = (b"#", b"%", b"//")
 
 
@@ -27,6 +30,8 @@ def read_numbers(
     spaces = bytes.maketrans(strip + b"\t\r,;", b" " * (len(strip) + 4))
     reader = _Lines(path, limit)
     with open(path, "rb") as handle:
+        _refuse_decimal_commas(handle.read(HEAD), path)
+        handle.seek(0)
         rest = b""
         while block := handle.read(BLOCK):
             text = rest + block
@@ -115,6 +120,15 @@ class _Lines:
                 )
             )
         return values
+
+
+def _refuse_decimal_commas(head: bytes, path: Path) -> None:
+    """LogError where the numbers of a line are parted by something else and hold commas, and no points."""
+    for line in head.splitlines():
+        words = re.split(rb"[;\s]+", line.strip())
+        if len(words) > 1 and b"." not in line and any(DECIMAL_COMMA.fullmatch(word) for word in words):
+            told = line.decode("utf-8", "replace").strip()[:40]
+            raise LogError(f"has decimal commas: '{told}'", path=path, valid="decimal points")
 
 
 def _is_number(word: bytes) -> bool:

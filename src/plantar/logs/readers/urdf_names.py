@@ -1,12 +1,13 @@
-"""A log's joints under the URDF's names, where the robot file says that the log calls them otherwise."""
+"""A log's joints as the URDF has them: under its names, and those that mimic others as far as these are recorded."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from plantar.errors import LogError
+from plantar.notes import Note, listing
 from plantar.robot.joint_names import JointNames
 
 if TYPE_CHECKING:
@@ -32,3 +33,21 @@ def with_urdf_names(log: MotionLog, names: JointNames, joints: Iterable[str]) ->
             raise LogError(message, path=log.source, column=column, valid="one of the two")
         columns[renamed] = values
     return replace(log, columns=columns)
+
+
+def with_following_joints(log: MotionLog, follows: Mapping[str, tuple[str, float, float]]) -> MotionLog:
+    """The same log with positions of joints that it does not hold and that follow others that it holds, and a note.
+
+    follows: of each such joint of the URDF the one that it mimics, which follows none, the factor and the offset [rad].
+    """
+    positions = {joint: f"joint.{joint}.position" for joint in follows}
+    columns = {
+        positions[joint]: factor * log.columns[f"joint.{leader}.position"] + offset
+        for joint, (leader, factor, offset) in follows.items()
+        if not log.has(positions[joint]) and log.has(f"joint.{leader}.position")
+    }
+    if not columns:
+        return log
+    told = listing([f"{joint} from {follows[joint][0]}" for joint in follows if positions[joint] in columns])
+    text = f"{log.name}: not recorded, computed by the URDF's <mimic>: {told}"
+    return log.with_columns(columns, Note("joint_mimics", "info", text))

@@ -60,6 +60,7 @@ def _holds_numbers(schema: pa.Schema, name: str, path: Path, strict: bool) -> bo
         is_kind(kind)
         for is_kind in (pa.types.is_floating, pa.types.is_integer, pa.types.is_decimal, pa.types.is_null)
     )
+    numeric = numeric or (_tick(kind) is not None and (name == "time" or not strict))
     if numeric and len(places) > 1:
         raise LogError("stands twice in the header", path=path, column=name)
     if numeric and any(other.startswith(f"{name}.") for other in schema.names):
@@ -68,6 +69,12 @@ def _holds_numbers(schema: pa.Schema, name: str, path: Path, strict: bool) -> bo
     if strict and not numeric:
         raise LogError(f"holds {kind}", path=path, column=name, valid="numbers")
     return numeric
+
+
+def _tick(kind: pa.DataType) -> float | None:
+    """What one is of a column of dates or durations [s]; None of another one."""
+    dated = pa.types.is_timestamp(kind) or pa.types.is_duration(kind)
+    return {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[kind.unit] if dated else None
 
 
 def _check_unpacked(
@@ -105,8 +112,12 @@ def _columns(
                     end = count + batch.num_rows
                     if end > rows:
                         break
+                    column = batch.column(name)
+                    tick = _tick(column.type)
+                    column = column if tick is None else column.cast(pa.int64())
                     # Not safely: nanoseconds since 1970 are more than a float64 tells apart, and near enough.
-                    numbers = batch.column(name).cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+                    numbers = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+                    numbers = numbers if tick is None else tick * numbers
                     numbers = numbers if kept is None else numbers[kept[count:end]]
                     row[place : place + len(numbers)] = numbers
                     count, place = end, place + len(numbers)

@@ -1,0 +1,66 @@
+"""Torques in another unit than N·m: they must balance the moments of the feet's forces about the centre of mass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.notes import Finding
+from plantar.robot.model import RobotModel
+
+TORQUE_UNIT = "torque_unit"
+FOLLOWS = (
+    0.75  # correlation of both moments; of real robots whose masses or legs are otherwise it is near zero
+)
+ANOTHER_UNIT = 3.0  # times too large or too small: no gain is as wrong
+BETTER = 0.99  # share of what all torques leave: below it those of one foot alone are in another unit
+LIKE = 1.4  # times: what moves makes moments, too
+UNITS = {0.001: "N·mm", 0.01: "N·cm", 9.80665: "kgf·m", 0.0980665: "kgf·cm", 1000.0: "kN·m"}
+
+
+class _Scale(NamedTuple):
+    """By how much torques of `columns` must be larger to balance the rest of the moments, how these correlate, and the
+    squares that are then left [m²]."""
+
+    left: float
+    correlation: float
+    scale: float
+    columns: str
+
+
+def torque_unit(robot: RobotModel, moment_arms: Array) -> Iterator[Finding]:
+    """A fatal finding where the torques of all feet, or of one, follow the other moments at another scale.
+
+    Without an accelerometer nothing else would tell: another unit looks like other rubber. moment_arms (n, feet, 6, 3)
+    [m], as in `StanceSides`.
+    """
+    sensors = [foot.wrench.name for foot in robot.feet.values()]
+    found = _scale(moment_arms, [*range(len(sensors))], "columns 'wrench.*.torque.*'")
+    for place, sensor in enumerate(sensors):
+        alone = _scale(moment_arms, [place], f"columns 'wrench.{sensor}.torque.*'")
+        found = alone if alone.left < BETTER * found.left else found
+    if found.correlation < FOLLOWS or 1 / ANOTHER_UNIT < found.scale < ANOTHER_UNIT:
+        return
+    nearest = min(UNITS, key=lambda unit: abs(np.log(unit / found.scale)))
+    like = f"; these look like {UNITS[nearest]}" if 1 / LIKE < nearest / found.scale < LIKE else ""
+    times = f"{float(f'{found.scale:.2g}'):g} times"
+    text = f"{found.columns}: {times} as large they would balance the moments of the forces"
+    yield Finding(TORQUE_UNIT, f"{text} (valid: torques in N·m{like})", True)
+
+
+def _scale(moment_arms: Array, feet: list[int], columns: str) -> _Scale:
+    torques = _moving(moment_arms[:, feet, 3:].sum(axis=(1, 2)))
+    rest = _moving(moment_arms.sum(axis=(1, 2))) - torques
+    together, squares = -float(np.sum(rest * torques)), (float(np.sum(torques**2)), float(np.sum(rest**2)))
+    if not together > 0:
+        return _Scale(np.inf, 0.0, 1.0, columns)
+    correlation = together / np.sqrt(squares[0] * squares[1])
+    return _Scale(squares[1] * (1 - correlation**2), correlation, together / squares[0], columns)
+
+
+def _moving(moments: Array) -> Array:
+    """Moments (n, 3) without their mean, as zeros and masses in another place make it."""
+    return np.asarray(moments - moments.mean(axis=0))

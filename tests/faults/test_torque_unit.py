@@ -1,0 +1,72 @@
+"""Torques in another unit are refused, of a standing and a walking robot; gains, hands and odd samples are no unit."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from plantar.faults.stance import stance_of
+from plantar.faults.torque_unit import torque_unit
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.twin import PAPER, PRESETS
+from plantar.twin.recording import record
+from plantar.twin.robots import hrp2
+from twin_samples import swayed, tilted, walked
+
+SENSORS = PRESETS["sensors"]
+
+
+@pytest.fixture(scope="module", params=[swayed, tilted, walked])
+def log(request: pytest.FixtureRequest) -> MotionLog:
+    if request.param is walked:
+        return walked()
+    return record(request.param(), hrp2.robot(), SENSORS.physics(PAPER), SENSORS, 0).log
+
+
+def found(log: MotionLog, scale: float, sensor: str = "") -> list[Finding]:
+    names = [name for name in log.columns if f"wrench.{sensor}" in name and ".torque." in name]
+    spoiled = log.with_columns({name: scale * log.column(name) for name in names})
+    stance = stance_of(hrp2.robot(), spoiled)
+    assert stance is not None
+    return list(torque_unit(hrp2.robot(), stance.sides().moment_arms))
+
+
+@pytest.mark.parametrize(
+    ("unit", "scale"),
+    [("N·mm", 1000.0), ("N·cm", 100.0), ("kgf·m", 1 / 9.80665), ("kgf·cm", 10.1972), ("kN·m", 0.001)],
+)
+def test_the_unit_is_named(log: MotionLog, unit: str, scale: float) -> None:
+    (finding,) = found(log, scale)
+    assert (finding.code, finding.fatal) == ("torque_unit", True)
+    assert finding.text.startswith("columns 'wrench.*.torque.*': ")
+    assert f"these look like {unit})" in finding.text
+    times = float(re.findall(r"': (\S+) times", finding.text)[0])
+    assert times == pytest.approx(1 / scale, rel=0.3)
+
+
+@pytest.mark.parametrize("scale", [0.5, 0.9, 1.0, 1.1, 2.0])
+def test_a_gain_is_no_unit(log: MotionLog, scale: float) -> None:
+    assert found(log, scale) == []
+
+
+def test_of_one_sensor_alone(log: MotionLog) -> None:
+    (finding,) = found(log, 1000.0, "right_foot")
+    which = "*" if log.name == "Manual_right_roll" else "right_foot"  # it stands on that foot alone
+    assert finding.text.startswith(f"columns 'wrench.{which}.torque.*': ")
+    assert "these look like N·mm" in finding.text
+
+
+def test_a_scale_that_is_no_units_is_refused_without_a_name(log: MotionLog) -> None:
+    (finding,) = found(log, 30.0)
+    assert finding.text.endswith("(valid: torques in N·m)")
+
+
+def test_moments_that_do_not_go_together_tell_no_unit() -> None:
+    """As of real robots whose masses or legs are not those of the URDF."""
+    random = np.random.default_rng(0)
+    forces, others = random.normal(0, 0.01, (2, 50, 2, 3, 3))
+    moments = np.concatenate([forces, 100 * (others - 0.5 * forces)], axis=2)
+    assert list(torque_unit(hrp2.robot(), moments)) == []
