@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import design_samples
-from plantar.design.rehearsal import Rehearsal
+from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.writing import promised
 
 LATE = 0.005  # s, in the preset of the rehearsals

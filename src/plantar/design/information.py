@@ -7,10 +7,11 @@ from typing import Final, Literal, get_args
 import numpy as np
 
 from plantar.conventions import NORMAL95, Array
-from plantar.design.reach import RATE, Reach
+from plantar.design.reach import FIRM_RATE, RATE, Reach
 from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
 from plantar.estimation.delays.delay import MODEL_ERROR
 from plantar.estimation.slow_drift import drift_basis
+from plantar.feet.assess.verdicts import USABLE_WIDTH
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
@@ -32,9 +33,10 @@ UNCLOSED: Final = (0.4, 0.2, 0.2)
 # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push.
 SEEN_FORCE: Final = 6.0
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
-# Times what is wanted: a stiffness within a third is weak, however near it comes to that.
-HOPELESS: Final = 60.0
+# Half widths with which `identify feet` calls stiffness and damping weak [share]: of no use, however near they are.
+HOPELESS: Final = (USABLE_WIDTH, 2 * USABLE_WIDTH)
 BEYOND: Final = 0.1  # share of what is wider still
+DOUBTFUL: Final = 2.0  # times below HOPELESS: from there the next number counts more and more
 ENOUGH: Final = 0.3  # share of what is narrower than wanted: it is bought last
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much.
@@ -50,14 +52,15 @@ def information(reach: Reach, coefficients: Array) -> Array:
     """
     bent, rate = reach.of(reach.firm_deflection, coefficients), reach.of(reach.firm_rate, coefficients)
     size = bent.shape[-1]
-    element = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(
-        *bent.shape[:-1], 2, size
-    )
+    columns = np.empty((*bent.shape[:-1], 4, size))
+    columns[..., 0, :], columns[..., 1, :] = bent, rate
+    element = columns[..., 2:, :]
+    element[:] = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(element.shape)
     element[..., 1, :] = (element[..., 1, :] - element[..., 0, :]) / np.log(NEARBY)
-    columns = np.concatenate([bent[..., None, :], rate[..., None, :], element], axis=-2)
-    slow = np.column_stack([np.full(size, size**-0.5), drift_basis(reach.time)])
-    free = columns - (columns @ slow) @ slow.T
-    whole = 10.0 / RATE / MISSED**2 * free @ np.swapaxes(free, -1, -2)
+    slow = np.column_stack([np.full(size, size**-0.5), drift_basis(reach.firm_time)])
+    slowly = columns @ slow
+    free = columns @ np.swapaxes(columns, -1, -2) - slowly @ np.swapaxes(slowly, -1, -2)
+    whole = 10.0 / FIRM_RATE / MISSED**2 * free
     # What is known of the element before: it is about as strong as the spring, its angle within a half.
     known = np.outer(reach.stiffness, [1.0, 0.5])
     whole[..., [2, 3], [2, 3]] += 1.0 / known[:, None, None] ** 2
@@ -117,22 +120,33 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     it, of the volume of all (D) or of their mean square (A).
 
     Beside the widest, what is narrower than wanted counts little.
-    Small soles cannot bend stiff feet far enough for every number. One that is out of reach must not be all that
-    counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
-    are `known` from before, what is weak comes first.
+    Small soles cannot bend stiff feet far enough for every number. Beyond HOPELESS a width counts for little, as that
+    number is of no use; the widest of the others counts beside it. So every number that comes within reach is a gain,
+    and none is given up for one that stays out of reach. To the widest a share of all others is added. Where others are
+    `known` from before, what is weak comes first.
     """
     feet = half_widths(reach, coefficients, known) / WANTED
     feet = feet.reshape(*feet.shape[:-3], -1)
     vertical = vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL
     delay = np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY)[..., None, None]
     widths = np.log(np.concatenate([feet, np.broadcast_to(delay, vertical.shape), vertical], axis=-1))
-    hopeless = np.inf if np.any(known) else np.log(HOPELESS)
+    hopeless = np.full(widths.shape[-1], np.inf)
+    if not np.any(known):
+        hopeless[: feet.shape[-1]] = np.resize(np.log(np.divide(HOPELESS, WANTED)), feet.shape[-1])
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
         widths = np.where(widths < 0, ENOUGH * widths, widths)
         return np.asarray(
-            np.mean((1 - OTHERS) * widths.max(axis=-1) + OTHERS * widths.mean(axis=-1), axis=-1)
+            np.mean((1 - OTHERS) * _widest(widths, hopeless) + OTHERS * widths.mean(axis=-1), axis=-1)
         )
     if criterion == "D":
         return np.asarray(widths.mean(axis=(-2, -1)))
     return np.asarray(np.log(np.mean(np.exp(2 * widths), axis=-1)).mean(axis=-1) / 2)
+
+
+def _widest(widths: Array, hopeless: Array) -> Array:
+    """The widest of logarithms (..., n), plus the widest of the others where it is hopeless, and so on, (...)."""
+    order = np.argsort(-widths, axis=-1)
+    ordered, limit = np.take_along_axis(widths, order, axis=-1), hopeless[order]
+    given_up = np.clip((ordered - limit) / np.log(DOUBTFUL) + 1.0, 0.0, 1.0)[..., :-1]
+    return np.asarray(ordered[..., 0] + np.sum(np.cumprod(given_up, axis=-1) * ordered[..., 1:], axis=-1))
