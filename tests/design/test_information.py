@@ -100,6 +100,27 @@ def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.Monkey
     assert of(half) - of(reached) > 0.5 * np.log(2)  # of what is in reach the widest counts
 
 
+def test_beside_a_number_out_of_reach_the_widest_of_the_others_counts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No pitch is given up for a roll that stays weak, and a number that comes to be usable outweighs both."""
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    monkeypatch.setattr(objective, "delay_half_width", lambda *_: objective.WANTED_DELAY)
+    monkeypatch.setattr(objective, "vertical_half_width", lambda *_: np.full(3, objective.WANTED_VERTICAL))
+
+    def of(pitch: float, roll: float, other_roll: float) -> float:
+        widths = np.full((3, 2, 2, 2), 0.005)
+        widths[:, :, 0, 0], widths[:, 0, 1, 0], widths[:, 1, 1, 0] = pitch, roll, other_roll
+        monkeypatch.setattr(objective, "half_widths", lambda *_: widths)
+        return float(badness(reach, coefficients, "widest"))
+
+    assert of(0.04, 3.0, 3.0) - of(0.02, 3.0, 3.0) > 0.5 * np.log(2)
+    assert of(0.04, 2.0, 2.0) > of(0.02, 3.0, 3.0)
+    assert of(0.04, 3.0, 0.1) < of(0.02, 3.0, 3.0)
+    widths = np.geomspace(0.01, 3.0, 60)
+    assert (np.diff([of(0.04, each, 3.0) for each in widths]) > 0).all(), "wider is never better"
+
+
 def test_what_is_narrower_than_wanted_is_bought_last(monkeypatch: pytest.MonkeyPatch) -> None:
     """Damping that is twice as narrow once more does not outweigh a stiffness that is not yet as wanted."""
     reach, coefficients = design_samples.reach(), design_samples.coefficients()

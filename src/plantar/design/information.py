@@ -33,10 +33,8 @@ UNCLOSED: Final = (0.4, 0.2, 0.2)
 # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push.
 SEEN_FORCE: Final = 6.0
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
-# Half widths with which `identify feet` calls stiffness and damping weak [share]: of no use, however near they are.
-HOPELESS: Final = (USABLE_WIDTH, 2 * USABLE_WIDTH)
 BEYOND: Final = 0.1  # share of what is wider still
-DOUBTFUL: Final = 2.0  # times below HOPELESS: from there the next number counts more and more
+DOUBTFUL: Final = 2.0  # times below what is usable: from there the next number counts more and more
 ENOUGH: Final = 0.3  # share of what is narrower than wanted: it is bought last
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much.
@@ -120,10 +118,10 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     it, of the volume of all (D) or of their mean square (A).
 
     Beside the widest, what is narrower than wanted counts little.
-    Small soles cannot bend stiff feet far enough for every number. Beyond HOPELESS a width counts for little, as that
-    number is of no use; the widest of the others counts beside it. So every number that comes within reach is a gain,
-    and none is given up for one that stays out of reach. To the widest a share of all others is added. Where others are
-    `known` from before, what is weak comes first.
+    Small soles cannot bend stiff feet far enough for every number. A width that `identify feet` calls weak counts for
+    little, as that number is of no use; the widest of the others counts beside it. So every number that comes within
+    reach is a gain, and none is given up for one that stays out of reach. To the widest a share of all others is added.
+    Where others are `known` from before, what is weak comes first.
     """
     feet = half_widths(reach, coefficients, known) / WANTED
     feet = feet.reshape(*feet.shape[:-3], -1)
@@ -132,7 +130,7 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     widths = np.log(np.concatenate([feet, np.broadcast_to(delay, vertical.shape), vertical], axis=-1))
     hopeless = np.full(widths.shape[-1], np.inf)
     if not np.any(known):
-        hopeless[: feet.shape[-1]] = np.resize(np.log(np.divide(HOPELESS, WANTED)), feet.shape[-1])
+        hopeless[: feet.shape[-1]] = np.resize(np.log(USABLE_WIDTH / np.array(WANTED)), feet.shape[-1])
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
         widths = np.where(widths < 0, ENOUGH * widths, widths)
