@@ -73,12 +73,11 @@ DESIGNED_MOTIONS = (
         "design/information.py", "more than enough counts as what is missing", "ENOUGH * widths", "widths", QUICK,
     ),
     Mutant(
-        "design/information.py", "a second motion gives up as the first did",
-        "if not np.any(known):", "if True:", QUICK,
+        "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
     ),
     Mutant(
         "design/information.py", "what stays out of reach is all that counts",
-        "np.cumprod(given_up, axis=-1)", "0 * np.cumprod(given_up, axis=-1)", QUICK,
+        "np.sum(np.cumprod(given_up", "np.sum(0 * np.cumprod(given_up", QUICK,
     ),
     Mutant(
         "design/search.py", "a way that is far behind is followed", "key=lambda way: way.least)[:FOLLOWED]",

@@ -11,7 +11,6 @@ from plantar.design.reach import FIRM_RATE, RATE, Reach
 from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
 from plantar.estimation.delays.delay import MODEL_ERROR
 from plantar.estimation.slow_drift import drift_basis
-from plantar.feet.assess.verdicts import USABLE_WIDTH
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
@@ -33,8 +32,12 @@ UNCLOSED: Final = (0.4, 0.2, 0.2)
 # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push.
 SEEN_FORCE: Final = 6.0
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
+# Times what is wanted: a stiffness within a third is weak, however near it comes to that.
+HOPELESS: Final = 60.0
 BEYOND: Final = 0.1  # share of what is wider still
-DOUBTFUL: Final = 2.0  # times below what is usable: from there the next number counts more and more
+DOUBTFUL: Final = (
+    4.0  # times below that, half of what is weak: from there the next number counts more and more
+)
 ENOUGH: Final = 0.3  # share of what is narrower than wanted: it is bought last
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much.
@@ -118,33 +121,38 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     it, of the volume of all (D) or of their mean square (A).
 
     Beside the widest, what is narrower than wanted counts little.
-    Small soles cannot bend stiff feet far enough for every number. A width that `identify feet` calls weak counts for
-    little, as that number is of no use; the widest of the others counts beside it. So every number that comes within
-    reach is a gain, and none is given up for one that stays out of reach. To the widest a share of all others is added.
+    Small soles cannot bend stiff feet far enough for every number. A stiffness that is weak is of no use, nor is the
+    damping beside it: beyond HOPELESS a width counts for little, and the widest of the others counts beside it. So
+    every number that comes within reach is a gain, and none is given up for one that stays out of reach. To the widest
+    a share of all others is added.
     Where others are `known` from before, what is weak comes first.
     """
-    feet = half_widths(reach, coefficients, known) / WANTED
-    feet = feet.reshape(*feet.shape[:-3], -1)
-    vertical = vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL
-    delay = np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY)[..., None, None]
-    widths = np.log(np.concatenate([feet, np.broadcast_to(delay, vertical.shape), vertical], axis=-1))
-    hopeless = np.full(widths.shape[-1], np.inf)
-    if not np.any(known):
-        hopeless[: feet.shape[-1]] = np.resize(np.log(USABLE_WIDTH / np.array(WANTED)), feet.shape[-1])
+    feet = np.log(half_widths(reach, coefficients, known) / WANTED)
+    vertical = np.log(vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL)
+    delay = np.log(np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY))[..., None, None]
+    hopeless = np.inf if np.any(known) else np.log(HOPELESS)
+    weak = np.clip((feet[..., :1] - hopeless) / np.log(DOUBTFUL) + 1.0, 0.0, 1.0)
+    of_feet = (*vertical.shape[:-1], -1)
+    widths = np.concatenate(
+        [feet.reshape(of_feet), np.broadcast_to(delay, vertical.shape), vertical], axis=-1
+    )
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
         widths = np.where(widths < 0, ENOUGH * widths, widths)
+        given_up = np.zeros_like(widths)
+        given_up[..., :-2] = np.broadcast_to(weak, feet.shape).reshape(of_feet)
         return np.asarray(
-            np.mean((1 - OTHERS) * _widest(widths, hopeless) + OTHERS * widths.mean(axis=-1), axis=-1)
+            np.mean((1 - OTHERS) * _widest(widths, given_up) + OTHERS * widths.mean(axis=-1), axis=-1)
         )
     if criterion == "D":
         return np.asarray(widths.mean(axis=(-2, -1)))
     return np.asarray(np.log(np.mean(np.exp(2 * widths), axis=-1)).mean(axis=-1) / 2)
 
 
-def _widest(widths: Array, hopeless: Array) -> Array:
-    """The widest of logarithms (..., n), plus the widest of the others where it is hopeless, and so on, (...)."""
+def _widest(widths: Array, given_up: Array) -> Array:
+    """The widest of logarithms (..., n), plus the widest of the others as far as that is given up, and so on, (...)."""
     order = np.argsort(-widths, axis=-1)
-    ordered, limit = np.take_along_axis(widths, order, axis=-1), hopeless[order]
-    given_up = np.clip((ordered - limit) / np.log(DOUBTFUL) + 1.0, 0.0, 1.0)[..., :-1]
-    return np.asarray(ordered[..., 0] + np.sum(np.cumprod(given_up, axis=-1) * ordered[..., 1:], axis=-1))
+    ordered, given_up = (np.take_along_axis(each, order, axis=-1) for each in (widths, given_up))
+    return np.asarray(
+        ordered[..., 0] + np.sum(np.cumprod(given_up[..., :-1], axis=-1) * ordered[..., 1:], axis=-1)
+    )
