@@ -35,9 +35,6 @@ USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known
 # Times what is wanted: a stiffness within a third is weak, however near it comes to that.
 HOPELESS: Final = 60.0
 BEYOND: Final = 0.1  # share of what is wider still
-DOUBTFUL: Final = (
-    4.0  # times below that, half of what is weak: from there the next number counts more and more
-)
 ENOUGH: Final = 0.3  # share of what is narrower than wanted: it is bought last
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much.
@@ -78,8 +75,7 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     a spring that slips for a part of the stiffness: the motion's own widths grow steeply. What the delay of the
     sensors is unsure by, times the stiffness of spring and element, the damping is unsure by as well.
     """
-    bend = np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2
-    missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
+    missing = np.maximum(TOLD_APART / np.maximum(bend(reach, coefficients), 1e-6), 1.0)[..., None, None]
     found = information(reach, coefficients) / missing ** (2 * STEEP) + known
     scale = np.sqrt(np.maximum(np.einsum("...ii->...i", found), 1e-12))
     scaled = found / (scale[..., :, None] * scale[..., None, :]) + 1e-9 * np.eye(2)
@@ -90,6 +86,11 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     late = np.asarray(delay_half_width(reach, coefficients))[..., None, None]
     widths[..., 1] = np.hypot(widths[..., 1], (late * firm / reach.damping[:, None])[..., None, :])
     return widths
+
+
+def bend(reach: Reach, coefficients: Array) -> Array:
+    """How far each bush is bent to either side in pitch and roll, (..., S, feet, 2) [rad]."""
+    return np.asarray(np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2)
 
 
 def delay_half_width(reach: Reach, coefficients: Array) -> Array:
@@ -121,17 +122,16 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     it, of the volume of all (D) or of their mean square (A).
 
     Beside the widest, what is narrower than wanted counts little.
-    Small soles cannot bend stiff feet far enough for every number. A stiffness that is weak is of no use, nor is the
-    damping beside it: beyond HOPELESS a width counts for little, and the widest of the others counts beside it. So
-    every number that comes within reach is a gain, and none is given up for one that stays out of reach. To the widest
-    a share of all others is added.
+    Small soles cannot bend stiff feet far enough for every number. An axis that bends too little will be weak, and
+    is of no use: beyond HOPELESS a width counts for little, and the less that axis bends, from TOLD_APART to where
+    nothing slips, the more the widest of the other numbers counts beside it. So every number that becomes usable is a
+    gain, and none is given up for one that stays weak. To the widest a share of all others is added.
     Where others are `known` from before, what is weak comes first.
     """
     feet = np.log(half_widths(reach, coefficients, known) / WANTED)
     vertical = np.log(vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL)
     delay = np.log(np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY))[..., None, None]
     hopeless = np.inf if np.any(known) else np.log(HOPELESS)
-    weak = np.clip((feet[..., :1] - hopeless) / np.log(DOUBTFUL) + 1.0, 0.0, 1.0)
     of_feet = (*vertical.shape[:-1], -1)
     widths = np.concatenate(
         [feet.reshape(of_feet), np.broadcast_to(delay, vertical.shape), vertical], axis=-1
@@ -140,7 +140,9 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     if criterion == "widest":
         widths = np.where(widths < 0, ENOUGH * widths, widths)
         given_up = np.zeros_like(widths)
-        given_up[..., :-2] = np.broadcast_to(weak, feet.shape).reshape(of_feet)
+        if not np.any(known):
+            weak = np.clip((TOLD_APART - bend(reach, coefficients)) / (TOLD_APART - SLIP_ANGLE), 0.0, 1.0)
+            given_up[..., :-2] = np.repeat(weak, 2, axis=-1).reshape(of_feet)
         return np.asarray(
             np.mean((1 - OTHERS) * _widest(widths, given_up) + OTHERS * widths.mean(axis=-1), axis=-1)
         )
