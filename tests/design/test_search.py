@@ -102,7 +102,8 @@ def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> 
     reach.element = 0 * reach.element
     units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
     slope = np.random.default_rng(3).standard_normal(units.size) / units
-    with patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope):
+    linear = patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope)
+    with linear, patch.object(search, "TRIED", 25):
         found = better_motion(reach, "widest", 0.1 * units)  # every beginning leads there
     rows = reach._watched.reshape(reach.lines.size, -1).T
     high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))

@@ -61,7 +61,7 @@ def coefficients() -> np.ndarray:
 def from_one_beginning(reach: Reach, criterion: Criterion, seed: int) -> np.ndarray:
     """Coefficients of a motion that took a few tries."""
     start = 0.1 * np.random.default_rng(seed).standard_normal(reach.lines.size)
-    with patch.object(search, "TRIES", TRIES):
+    with patch.object(search, "TRIED", TRIES):
         return better_motion(reach, criterion, start)
 
 

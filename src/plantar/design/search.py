@@ -76,9 +76,9 @@ def best_motion(
 
 
 def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:
-    """The same from one beginning, a motion that is known, where limits are no longer what they were."""
+    """The same from one beginning, a motion that is known, where limits are no longer what they were: a few steps."""
     climb = _Climb(reach, criterion, known, 1.0 / reach.alone(), start, BEGIN)
-    climb.go(TRIES)
+    climb.go(TRIED)
     return climb.best
 
 
