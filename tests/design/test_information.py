@@ -109,9 +109,9 @@ def test_beside_a_number_out_of_reach_the_widest_of_the_others_counts(
     monkeypatch.setattr(objective, "vertical_half_width", lambda *_: np.full(3, objective.WANTED_VERTICAL))
 
     def of(pitch: float, roll: float, other_roll: float) -> float:
-        """Of a stiffness of pitch, and of two rolls that bend the less the wider they are, below 14 mrad from 0.02."""
+        """Of a stiffness of pitch, and of two rolls that bend the less the wider they are, 14 mrad at 0.02."""
         widths = np.full((3, 2, 2, 2), 0.005)
-        widths[:, :, 0, 0], widths[:, 0, 1, 0], widths[:, 1, 1, 0] = pitch, roll, other_roll
+        widths[:, :, 0, 0], widths[:, 0, 1], widths[:, 1, 1] = pitch, roll, other_roll
         bends = np.full((3, 2, 2), 0.03)
         bends[:, :, 1] = 0.014 * (0.02 / np.array([roll, other_roll])) ** (1 / 8)
         monkeypatch.setattr(objective, "half_widths", lambda *_: widths)

@@ -73,11 +73,12 @@ DESIGNED_MOTIONS = (
         "design/information.py", "more than enough counts as what is missing", "ENOUGH * widths", "widths", QUICK,
     ),
     Mutant(
-        "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
+        "design/information.py", "a second motion gives up as the first did",
+        "if not np.any(known):", "if True:", QUICK,
     ),
     Mutant(
         "design/information.py", "what stays out of reach is all that counts",
-        "np.sum(np.cumprod(given_up", "np.sum(0 * np.cumprod(given_up", QUICK,
+        "np.max((1.0 - weak) * widths, axis=-1)", "0.0", QUICK,
     ),
     Mutant(
         "design/search.py", "a way that is far behind is followed", "key=lambda way: way.least)[:FOLLOWED]",

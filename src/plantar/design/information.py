@@ -122,16 +122,20 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     it, of the volume of all (D) or of their mean square (A).
 
     Beside the widest, what is narrower than wanted counts little.
-    Small soles cannot bend stiff feet far enough for every number. An axis that bends too little will be weak, and
-    is of no use: beyond HOPELESS a width counts for little, and the less that axis bends, from TOLD_APART to where
-    nothing slips, the more the widest of the other numbers counts beside it. So every number that becomes usable is a
-    gain, and none is given up for one that stays weak. To the widest a share of all others is added.
-    Where others are `known` from before, what is weak comes first.
+    Small soles cannot bend stiff feet far enough for every number. An axis that bends too little will be weak, and is
+    of no use: the less it bends, from TOLD_APART to where nothing slips, the more the widest of the other numbers
+    counts beside its own. How much less than that counts for little, as does a width beyond HOPELESS. So every number
+    that becomes usable is a gain, and none is given up for one that stays weak. To the widest a share of all others is
+    added. Where others are `known` from before, what is weak comes first.
     """
     feet = np.log(half_widths(reach, coefficients, known) / WANTED)
     vertical = np.log(vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL)
     delay = np.log(np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY))[..., None, None]
-    hopeless = np.inf if np.any(known) else np.log(HOPELESS)
+    hopeless, weak = np.inf, np.zeros(feet.shape[:-1])
+    if not np.any(known):
+        bent = np.maximum(bend(reach, coefficients), 1e-6)
+        hopeless, weak = np.log(HOPELESS), np.clip((TOLD_APART - bent) / (TOLD_APART - SLIP_ANGLE), 0.0, 1.0)
+        feet = feet - (1 - BEYOND) * STEEP * np.log(np.maximum(SLIP_ANGLE / bent, 1.0))[..., None]
     of_feet = (*vertical.shape[:-1], -1)
     widths = np.concatenate(
         [feet.reshape(of_feet), np.broadcast_to(delay, vertical.shape), vertical], axis=-1
@@ -139,22 +143,18 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
         widths = np.where(widths < 0, ENOUGH * widths, widths)
-        given_up = np.zeros_like(widths)
-        if not np.any(known):
-            weak = np.clip((TOLD_APART - bend(reach, coefficients)) / (TOLD_APART - SLIP_ANGLE), 0.0, 1.0)
-            given_up[..., :-2] = np.repeat(weak, 2, axis=-1).reshape(of_feet)
+        of_all = np.zeros_like(widths)
+        of_all[..., :-2] = np.repeat(weak, 2, axis=-1).reshape(of_feet)
         return np.asarray(
-            np.mean((1 - OTHERS) * _widest(widths, given_up) + OTHERS * widths.mean(axis=-1), axis=-1)
+            np.mean((1 - OTHERS) * _widest(widths, of_all) + OTHERS * widths.mean(axis=-1), axis=-1)
         )
     if criterion == "D":
         return np.asarray(widths.mean(axis=(-2, -1)))
     return np.asarray(np.log(np.mean(np.exp(2 * widths), axis=-1)).mean(axis=-1) / 2)
 
 
-def _widest(widths: Array, given_up: Array) -> Array:
-    """The widest of logarithms (..., n), plus the widest of the others as far as that is given up, and so on, (...)."""
-    order = np.argsort(-widths, axis=-1)
-    ordered, given_up = (np.take_along_axis(each, order, axis=-1) for each in (widths, given_up))
+def _widest(widths: Array, weak: Array) -> Array:
+    """The widest of logarithms (..., n), and beside it all others that are `weak`, as far as they are, (...)."""
     return np.asarray(
-        ordered[..., 0] + np.sum(np.cumprod(given_up[..., :-1], axis=-1) * ordered[..., 1:], axis=-1)
+        np.sum(weak * np.maximum(widths, 0.0), axis=-1) + np.max((1.0 - weak) * widths, axis=-1)
     )
