@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
 from biped import TRUTH, record, sway
@@ -35,3 +38,19 @@ def test_a_known_delay_is_taken_off_and_an_unknown_one_widens_damping(tmp_path: 
     assert shifted.value - narrow.value == pytest.approx(gained, rel=0.1), (
         "C grows by K times the delay taken off"
     )
+
+
+@pytest.mark.parametrize(("prior", "verdicts"), [(0.0075, {"weak"}), (0.002, {"weak"}), (0.0005, {"usable"})])
+def test_damping_beside_an_unknown_delay_is_not_usable_unless_the_robot_file_knows_the_delay(
+    tmp_path: Path, prior: float, verdicts: set[str]
+) -> None:
+    """Force sensors 30 ms early: C was 42 % too large, and as its interval's share is the smaller for it, usable."""
+    robot = make_robot(tmp_path)
+    robot = replace(robot, uncertainty=replace(robot.uncertainty, wrench_delay=prior))
+    found = identify_feet(robot, [record(sway("one", seed=1)), record(sway("two", seed=2))])
+    damping = [row for row in found.parameters if row.name == "damping" and row.axis != "z"]
+    assert {row.verdict for row in damping} == verdicts
+    if prior == 0.002:
+        assert all("no log shows how late" in row.reason for row in damping)
+    stiffness = [row for row in found.parameters if row.name == "stiffness" and row.axis != "z"]
+    assert {row.verdict for row in stiffness} == {"usable"}

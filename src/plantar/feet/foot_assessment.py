@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
-from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
+from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first, untimed
 from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.odd_recordings import odd_recordings, odd_walks
@@ -30,7 +30,7 @@ from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.far_arms import far_arms
-from plantar.feet.place.misread_joints import misread_joint_notes
+from plantar.feet.place.misread_joints import OUT_OF_TIME, misread_joint_notes
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.notes import Note
@@ -68,8 +68,8 @@ def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
             found.parameters.extend(unseen_rows(fitted.foot, axis, fitted.ready.fitted))
-    # A clock that is late is late about both axes, also about the one whose damping hardly shows it.
-    late = [note for note in found.notes if note.code == RECORDING_LATE]
+    # A clock that is late is late about both axes, also about the one that hardly shows it.
+    late = [note for note in found.notes if note.code in (RECORDING_LATE, OUT_OF_TIME)]
     notes = (*found.notes, *internal_errors(fitted.foot, fitted.given_up))
     return replace(found, parameters=doubted(found.parameters, late), notes=notes)
 
@@ -94,7 +94,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     contradicted = contradiction(
         scores, wide, ready.recordings, predictions, ready.robot.uncertainty.imu_mount
     )
-    rows = axis_rows(wide, ready.fitted, predictions, contradicted)
+    rows = untimed(axis_rows(wide, ready.fitted, predictions, contradicted), ready.sensor_delay.note)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     walks = walk_stiffness(ready.recordings, wide)

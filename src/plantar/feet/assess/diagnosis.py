@@ -14,6 +14,7 @@ from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter
 from plantar.results.numbers import number
+from plantar.sensors.delays.sensor_delay import UNKNOWN
 
 ZEROS_OF_STANCES = "zeros of stances"
 REMEDY = {
@@ -102,6 +103,20 @@ def share_of(limit: str, shares: Mapping[str, float]) -> str:
     if share > NEARLY_ALL:
         return f"nearly all of it from {limit}"
     return f"{100 * share:.0f} % of its variance from {limit}"
+
+
+def untimed(rows: Sequence[Parameter], delay: Note) -> list[Parameter]:
+    """The rows, damping no longer usable where the note of the `delay` says that no log shows it.
+
+    Damping follows it one to one: force sensors 30 ms early made C 42 % too large, and its interval the smaller share.
+    """
+    why = "no log shows how late the force sensors are, and damping follows that"
+    return [
+        replace(row, verdict="weak", reason=f"{why}; {row.reason}", advice=REMEDY["delay"])
+        if delay.code == UNKNOWN and (row.name, row.verdict) == ("damping", "usable")
+        else row
+        for row in rows
+    ]
 
 
 def mend_first(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:

@@ -26,12 +26,14 @@ from plantar.signals.filters import differentiate
 from plantar.signals.orientation import attitude
 
 MISREAD = "joint_misread"
+OUT_OF_TIME = "imu_out_of_time"
 SURE = 5.0  # deviations of what is misread
 # Times less that is left of the squares than by the bush alone; play shows at its joint's turns only.
 BETTER, BETTER_TURNING = 1.5, 1.3
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
+ALL_LATE = 0.25  # s, likewise of all joints, which are late together where it is the IMU that is early
 # Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
 # sign of its rate gives back half of what is missing.
 PART = 0.5
@@ -52,8 +54,12 @@ class Misread(NamedTuple):
     matters: bool
 
     def __str__(self) -> str:
-        if self.kind == "late":
-            return f"'{self.joint}' {1e3 * abs(self.size):.2g} ms {'late' if self.size > 0 else 'early'}"
+        if self.kind in ("late", "together"):
+            when, imu = ("late", "early") if self.size > 0 else ("early", "late")
+            which, also = (
+                (self.joint, f" (or the IMU {imu})") if self.kind == "together" else (f"'{self.joint}'", "")
+            )
+            return f"{which} {1e3 * abs(self.size):.3g} ms {when}{also}"
         if self.kind == "soft":
             return f"{self.joint} tilts by {1e3 * abs(self.size):.2g} mrad for each m/s², as on a soft mount"
         if self.kind == "play":
@@ -86,13 +92,14 @@ def misread_joint_notes(
         return []
     if alone.squares < (BETTER_TURNING if found[0].kind == "play" else BETTER) * found[0].squares:
         return []
-    alike = [str(one) for one in found if one.squares <= ALIKE * found[0].squares]
+    alike = [one for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
         f"{wide.foot} {wide.axis}: the torque follows the angle far better if one error of measurement is taken off: "
-        f"{', or '.join(alike)}. Stiffness and damping follow it (valid: encoders without play, whose angles are the "
-        "links', all read at one moment; a stiff mount of the IMU)"
+        f"{', or '.join(map(str, alike))}. Stiffness and damping follow it (valid: encoders without play, whose angles "
+        "are the links', all read at one moment; a stiff mount of the IMU)"
     )
-    return [Note(MISREAD, "warning", text)]
+    together = all(one.kind == "together" for one in alike)
+    return [Note(OUT_OF_TIME if together else MISREAD, "warning", text)]
 
 
 def _misread(
@@ -101,7 +108,7 @@ def _misread(
     """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
     fit = fit_blocks(wider, shared_offset=shared)
     size, std = float(fit.values[-1]), float(fit.std[-1])
-    most = {"gain": GAIN, "late": LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
+    most = {"gain": GAIN, "late": LATE, "together": ALL_LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
     if not (SURE * std < away < most and fit.condition_number < SINGULAR):
         return None
@@ -123,7 +130,7 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
         columns[joint, "play"] = own * fit.values[0] * turns
     # One bus often reads all joints of a leg.
     if late := [column for (_, kind), column in columns.items() if kind == "late"]:
-        columns[f"all joints to the {fit.foot} foot", "late"] = np.sum(late, axis=0)
+        columns[f"all joints to the {fit.foot} foot", "together"] = np.sum(late, axis=0)
     tilts = _tilts(robot, recording, fit.foot)[:, ROTATIONAL_AXES.index(fit.axis)]
     return columns | {("the IMU", "soft"): tilts @ fit.values[:2]}
 

@@ -40,6 +40,7 @@ SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected bey
 # Predicted over measured squares of the torques, or the reverse; a delay of a second halves them.
 PUSHED = 3.0
 BEYOND_SEARCH = "delay_beyond_search"
+UNKNOWN = "delay_unknown"
 
 
 @dataclass(frozen=True)
@@ -179,7 +180,7 @@ def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
         f"delay of the wrenches unknown: {why}; taken as 0 ± {1e3 * prior:.1f} ms, which widens the interval of the "
         f"damping by stiffness times that. {todo}"
     )
-    note = Note("delay_unknown", "warning", text)
+    note = Note(UNKNOWN, "warning", text) if prior > KNOWN_STD else Note("delay_assumed", "info", text)
     return SensorDelay(0.0, prior, np.inf, False, note, encoders_std=APART)
 
 
