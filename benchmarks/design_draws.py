@@ -18,7 +18,7 @@ import numpy as np
 
 from design_motions import ROBOTS, robot_file
 from plantar.conventions import GRAVITY
-from plantar.design.rehearsal import Rehearsal, rehearse
+from plantar.design.rehearsals.rehearsal import Rehearsal, rehearse
 from plantar.design.soft_feet import Softness
 from plantar.twin.own_motion import own_plan
 

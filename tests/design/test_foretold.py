@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import design_samples
-from plantar.design.rehearsal import Rehearsal
+from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.story import Design, DesignSettings
 from plantar.design.writing.foretold import foretold
 from plantar.twin.robots import hrp2

@@ -25,7 +25,7 @@ from plantar.design.rubber import (
 MISSED = 0.1
 UNCLOSED = np.array([0.4, 0.2, 0.2])
 MODEL_ERROR = 0.003
-RATE = 20.0
+FIRM_RATE = 10.0
 NEARBY = 1.05
 SECANT = 0.6
 SLIP_ANGLE = 0.01
@@ -53,7 +53,7 @@ def test_information_is_that_of_least_squares() -> None:
     slow = np.hstack([np.ones_like(share), share, cosines])
     design = np.column_stack([bent, rate, element[0], turned, slow]) / MISSED
     assert slow.shape[1] > 3, "an offset, a line and cosines"
-    normal = design.T @ design * 10 / RATE
+    normal = design.T @ design * 10 / FIRM_RATE
     normal[2, 2] += 1 / reach.stiffness[1] ** 2
     normal[3, 3] += 4 / reach.stiffness[1] ** 2
     covariance = np.linalg.inv(normal)[:2, :2]

@@ -12,7 +12,7 @@ import pytest
 
 import design_samples
 from plantar.design.paper_motions import PaperMotions
-from plantar.design.rehearsal import Rehearsal
+from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.writing import promised
 from plantar.motions.select_motions import Choice, Selection
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import design_samples
-from plantar.design import rehearsal, story
-from plantar.design.rehearsal import Rehearsal
+from plantar.design import story
+from plantar.design.rehearsals import attempt, rehearsal
+from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.story import (
     DesignSettings,
     design_motion,
@@ -35,19 +36,19 @@ FREE = Rehearsal(
 )  # takes up less than a quarter of each limit
 
 
-def attempt(foretold: float | np.ndarray = LEFT) -> story._Attempt:
+def standing(foretold: float | np.ndarray = LEFT) -> attempt.Attempt:
     """A motion that takes up as much of its limits, by the linear robot, and what is found for it stays as it is."""
     reach = Mock(used_by_kind=lambda _: foretold * np.ones((len(FACTORS), len(KINDS))))
-    return story._Attempt(reach, lambda _, start: start, np.ones(3), FACTORS)
+    return attempt.Attempt(reach, lambda _, start: start, np.ones(3), FACTORS)
 
 
-def rehearsed(motion: story._Attempt, *found: Rehearsal) -> None:
+def rehearsed(motion: attempt.Attempt, *found: Rehearsal) -> None:
     motion.rehearsals = {one.factor: one for one in found}
 
 
 def test_a_limit_that_is_passed_is_held_to_less_where_it_is_passed_alone() -> None:
     """Of 50 mm to the sides 48 are used where 44.5 may be: by half of that, as soles that roll exaggerate."""
-    motion = attempt()
+    motion = standing()
     near = replace(FREE, factor=2.0, sole_margins=(0.04, 0.002))
     rehearsed(motion, replace(FREE, factor=0.5), near)
     motion.adapt()
@@ -62,7 +63,7 @@ def test_a_limit_that_is_passed_is_held_to_less_where_it_is_passed_alone() -> No
 
 
 def test_what_failed_far_from_a_limit_is_held_to_less_than_it_used() -> None:
-    motion = attempt(0.4)
+    motion = standing(0.4)
     rehearsed(motion, *(replace(FREE, factor=each, friction=1.1 * FRICTION) for each in FACTORS))
     motion.adapt()
     kept = (1 - SPARE) / np.sqrt(1.1)
@@ -89,7 +90,7 @@ def test_the_ends_come_first_then_what_did_not_hold_and_all_hold_in_the_end() ->
     with (
         patch.object(story, "best_motion", design_samples.gentle_motion),
         patch.object(story, "better_motion", lambda limits, _, start, __: 0.9 * start),
-        patch.object(story, "rehearse", rehearse),
+        patch.object(attempt, "rehearse", rehearse),
     ):
         found = design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
     assert [factors for factors, _ in played] == [
@@ -106,7 +107,7 @@ def test_the_ends_come_first_then_what_did_not_hold_and_all_hold_in_the_end() ->
 
 
 def test_arms_that_touch_something_are_left_out_and_limits_hold_without_them() -> None:
-    motion = attempt()
+    motion = standing()
     motion.reach = Mock(lines=design_samples.reach().lines)
     motion.coefficients = design_samples.coefficients()
     assert motion.lower_arms()
@@ -127,10 +128,10 @@ def test_arms_that_touch_something_are_left_out_and_limits_hold_without_them() -
     ],
 )
 def test_a_rehearsal_takes_up_shares_of_each_limit(one: dict[str, Any], kind: str, used: float) -> None:
-    found, _ = story._used(replace(FREE, **one))
+    found, _ = attempt.used_by(replace(FREE, **one))
     assert found[KINDS.index(kind)] == pytest.approx(used)
     assert np.delete(found, KINDS.index(kind)).max() < 0.25
-    too_much, reason = story._used(replace(FREE, effort=1.8))
+    too_much, reason = attempt.used_by(replace(FREE, effort=1.8))
     assert too_much == pytest.approx(2.0)
     assert "180 % of its torque limit" in reason
 
@@ -176,9 +177,9 @@ def test_each_draw_of_a_rehearsal_has_its_own_sensors_and_a_floor_for_its_steps(
 @pytest.mark.parametrize("margin", [4e-4, 0.0, -2e-4, -1.0])
 def test_a_centre_of_pressure_at_the_border_does_not_say_how_much_too_large(margin: float) -> None:
     """It never leaves a sole: how far beyond the limits a sole tips is not seen, so the step is the largest."""
-    used, reason = story._used(replace(FREE, sole_margins=(margin, 0.04)))
+    used, reason = attempt.used_by(replace(FREE, sole_margins=(margin, 0.04)))
     assert used[0] == np.inf
     assert used[1] < 1.0
     assert "of a sole's border" in reason
-    seen = story._used(replace(FREE, sole_margins=(6e-4, 0.04)))[0][0]
+    seen = attempt.used_by(replace(FREE, sole_margins=(6e-4, 0.04)))[0][0]
     assert seen == pytest.approx((0.05 - 6e-4) / (0.05 - KEPT))

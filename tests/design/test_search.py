@@ -15,16 +15,13 @@ from plantar import cores
 from plantar.contact.polygon import inside_distance
 from plantar.design import search
 from plantar.design.family import Lines
-from plantar.design.reach import (
-    KINDS,
-    Reach,
-    margin_kept,
-)
+from plantar.design.reach import KINDS, Reach
 from plantar.design.rubber import (
     SHARE,
     remembered,
 )
 from plantar.design.search import best_motion, better_motion
+from plantar.design.soles import margin_kept
 from plantar.twin.robots import hrp2
 
 BEND = 0.1
@@ -54,7 +51,11 @@ def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
     """On other frequencies, too: the best of all beginnings, each of which has its own."""
 
     def found(seed: int) -> tuple[int, Lines, np.ndarray]:
-        with patch.object(search, "TRIES", 1), patch.object(search, "STARTS", 2):
+        with (
+            patch.object(search, "TRIED", 1),
+            patch.object(search, "TRIES", 2),
+            patch.object(search, "STARTS", 2),
+        ):
             return best_motion([reach_on], 20.0, "A", seed)
 
     def reach_on(lines: Lines) -> Reach:
@@ -84,11 +85,13 @@ def test_beginnings_take_the_stances_in_turn_and_the_best_one_stands_as_its_own_
     told, stances = design_samples.told(), list[tuple[int, np.ndarray]]()
     with (
         patch.object(cores, "usable_cores", lambda: 1),
-        patch.object(search, "TRIES", 1),
+        patch.object(search, "TRIED", 1),
+        patch.object(search, "TRIES", 2),
         patch.object(search, "STARTS", 4),
+        patch.object(search, "FOLLOWED", 2),
     ):
         stance, lines, _ = best_motion([reach_of(0), reach_of(1)], 20.0, "A", 2)
-    assert [each for each, _ in stances] == [0, 1, 0, 1]
+    assert [each for each, _ in stances] == [0, 1, 0, 1, 1, 1], "the best two are followed"
     assert stance == 1, "whose limits are wider"
     assert any(np.array_equal(lines.frequencies, own) for each, own in stances if each == 1)
 
@@ -99,7 +102,8 @@ def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> 
     reach.element = 0 * reach.element
     units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
     slope = np.random.default_rng(3).standard_normal(units.size) / units
-    with patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope):
+    linear = patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope)
+    with linear, patch.object(search, "TRIED", 25):
         found = better_motion(reach, "widest", 0.1 * units)  # every beginning leads there
     rows = reach._watched.reshape(reach.lines.size, -1).T
     high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))

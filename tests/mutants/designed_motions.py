@@ -28,7 +28,7 @@ DESIGNED_MOTIONS = (
         "design/soft_feet.py", "one foot of two is asked for", "self.height / len(self.places)", "self.height", QUICK,
     ),
     Mutant(
-        "design/reach.py", "centres of pressure to the other side in pitch",
+        "design/soles.py", "centres of pressure to the other side in pitch",
         "[[-1.0], [1.0]]", "[[-1.0], [0.0]]", QUICK,
     ),
     Mutant(
@@ -60,10 +60,10 @@ DESIGNED_MOTIONS = (
     ),
     Mutant(
         "design/information.py", "a lean that a drift hides counts",
-        "drift_basis(reach.time)", "drift_basis(reach.time)[:, :1]", QUICK,
+        "drift_basis(reach.firm_time)", "drift_basis(reach.firm_time)[:, :1]", QUICK,
     ),
     Mutant(
-        "design/story.py", "what fails far from its limit keeps its share",
+        "design/rehearsals/attempt.py", "what fails far from its limit keeps its share",
         "change * np.minimum(shares, foretold)", "change * shares", ("design/test_rehearsals.py",),
     ),
     Mutant(
@@ -74,6 +74,10 @@ DESIGNED_MOTIONS = (
     ),
     Mutant(
         "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
+    ),
+    Mutant(
+        "design/search.py", "a way that is far behind is followed", "key=lambda way: way.least)[:FOLLOWED]",
+        "key=lambda way: -way.least)[:FOLLOWED]", QUICK,
     ),
     Mutant(
         "design/known.py", "a weak stiffness is no softer", "else SPRING * low", "else low", ("design/test_known.py",),

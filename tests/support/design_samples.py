@@ -11,13 +11,14 @@ from unittest.mock import patch
 import numpy as np
 
 from plantar import cores
-from plantar.design import rehearsal, search, story
+from plantar.design import search, story
 from plantar.design.family import Lines
 from plantar.design.information import Criterion
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
 from plantar.design.reach import Reach
-from plantar.design.rehearsal import Rehearsal, rehearse
+from plantar.design.rehearsals import attempt, rehearsal
+from plantar.design.rehearsals.rehearsal import Rehearsal, rehearse
 from plantar.design.search import better_motion
 from plantar.design.soft_feet import Softness
 from plantar.design.story import Design, DesignSettings, design_motion
@@ -60,7 +61,7 @@ def coefficients() -> np.ndarray:
 def from_one_beginning(reach: Reach, criterion: Criterion, seed: int) -> np.ndarray:
     """Coefficients of a motion that took a few tries."""
     start = 0.1 * np.random.default_rng(seed).standard_normal(reach.lines.size)
-    with patch.object(search, "TRIES", TRIES):
+    with patch.object(search, "TRIED", TRIES):
         return better_motion(reach, criterion, start)
 
 
@@ -114,7 +115,7 @@ def designed() -> Design:
     """Rehearsed on the twin, too."""
     with (
         patch.object(story, "best_motion", gentle_motion),
-        patch.object(story, "rehearse", RehearsedOnce()),
+        patch.object(attempt, "rehearse", RehearsedOnce()),
         patch.object(Rehearsal, "feet_found", identified_once({})),
         patch.object(rehearsal, "DRAWS", 1),
         patch.object(cores, "usable_cores", lambda: 1),  # copies would identify it again
@@ -126,7 +127,7 @@ def designed_again() -> Design:
     """The same, with the rehearsals of the first and what was identified from them."""
     with (
         patch.object(story, "best_motion", gentle_motion),
-        patch.object(story, "rehearse", lambda *_: list(designed().rehearsals)),
+        patch.object(attempt, "rehearse", lambda *_: list(designed().rehearsals)),
         patch.object(Rehearsal, "feet_found", lambda own, _: own.results),
         patch.object(cores, "usable_cores", lambda: 1),
     ):

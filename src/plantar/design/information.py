@@ -7,7 +7,7 @@ from typing import Final, Literal, get_args
 import numpy as np
 
 from plantar.conventions import NORMAL95, Array
-from plantar.design.reach import RATE, Reach
+from plantar.design.reach import FIRM_RATE, RATE, Reach
 from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
 from plantar.estimation.delays.delay import MODEL_ERROR
 from plantar.estimation.slow_drift import drift_basis
@@ -50,14 +50,15 @@ def information(reach: Reach, coefficients: Array) -> Array:
     """
     bent, rate = reach.of(reach.firm_deflection, coefficients), reach.of(reach.firm_rate, coefficients)
     size = bent.shape[-1]
-    element = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(
-        *bent.shape[:-1], 2, size
-    )
+    columns = np.empty((*bent.shape[:-1], 4, size))
+    columns[..., 0, :], columns[..., 1, :] = bent, rate
+    element = columns[..., 2:, :]
+    element[:] = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(element.shape)
     element[..., 1, :] = (element[..., 1, :] - element[..., 0, :]) / np.log(NEARBY)
-    columns = np.concatenate([bent[..., None, :], rate[..., None, :], element], axis=-2)
-    slow = np.column_stack([np.full(size, size**-0.5), drift_basis(reach.time)])
-    free = columns - (columns @ slow) @ slow.T
-    whole = 10.0 / RATE / MISSED**2 * free @ np.swapaxes(free, -1, -2)
+    slow = np.column_stack([np.full(size, size**-0.5), drift_basis(reach.firm_time)])
+    slowly = columns @ slow
+    free = columns @ np.swapaxes(columns, -1, -2) - slowly @ np.swapaxes(slowly, -1, -2)
+    whole = 10.0 / FIRM_RATE / MISSED**2 * free
     # What is known of the element before: it is about as strong as the spring, its angle within a half.
     known = np.outer(reach.stiffness, [1.0, 0.5])
     whole[..., [2, 3], [2, 3]] += 1.0 / known[:, None, None] ** 2

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.design.rehearsal import bush_of
+from plantar.design.rehearsals.rehearsal import bush_of
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError
 from plantar.logs.motion_log import MotionLog

@@ -8,19 +8,20 @@ from typing import Final
 
 import numpy as np
 
-from plantar.contact.polygon import convex_hull
-from plantar.conventions import GRAVITY, Array, Mask
+from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot, internal_forces
 from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
+from plantar.design.soles import edges, ends, outward
 from plantar.twin.presets import DEFAULT, preset_named
 
 RATE: Final = 20.0  # Hz: eight samples in the quickest sine
 FINER: Final = 2  # times: of what is differentiated
-EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
-SMALLER_EDGE: Final = 0.2  # of a sole's half width at most: small feet need some room to be excited
+FIRM_RATE: Final = (
+    10.0  # Hz, of what stiffness and damping show in: eight samples in the quickest sine of an ankle
+)
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 SIDES: Final = 8  # of the polygon that stands for the circle of friction
 LIFT: Final = 0.35  # of its load at rest that every foot keeps at least
@@ -43,9 +44,9 @@ class Reach:
     """Limits of one robot, for motions on `lines`, over bushes from soft to stiff.
 
     What one unit of each coefficient does: `deflection` [rad] and `rate` [rad/s] (size, S, feet, 2, N) in pitch and
-    roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate` where rubber that slips stands
-    beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and `wrench_rates` (size, 3, N), of the
-    vertical force [N/s] and of the moments about x and y [N·m/s].
+    roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate`, at `firm_time` (M,) [s],
+    where rubber that slips stands beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and
+    `wrench_rates` (size, 3, N), of the vertical force [N/s] and of the moments about x and y [N·m/s].
     Limits hold for the plain springs, with what slips added to their torques; intervals come from the others.
     """
 
@@ -88,13 +89,18 @@ class Reach:
             ]
 
         self.deflection, self.rate, self.load = parts(0 * self.element, "deflection", "rate", "load")
-        self.firm_deflection, self.firm_rate = parts(SECANT * self.element, "deflection", "rate")
+        firm = slice(None, None, round(RATE / FIRM_RATE))
+        self.firm_time = self.time[firm]
+        self.firm_deflection, self.firm_rate = (
+            np.ascontiguousarray(part[..., firm])
+            for part in parts(SECANT * self.element, "deflection", "rate")
+        )
         self.stiffness = np.array([bush.stiffness for bush in bushes])
         self.damping = np.array([bush.damping for bush in bushes])
         self.forces = wrench[:, :3]
         self.vertical = told.vertical
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
-        self._edges = [_edges(legs, foot) for foot in self.feet]
+        self._edges = [edges(legs, foot) for foot in self.feet]
         self._squeezed = internal_forces(legs)
         height = robot.pendulum.height
         largest = [
@@ -124,6 +130,9 @@ class Reach:
         ]
         others = np.full(sum(low.size for _, low, _ in own), first.size * len(KINDS))
         self._group = np.concatenate([others, *groups])
+        # Of each series, its place in what slips; -1 where nothing does: edges and friction come last.
+        slipping = sum(low.size for _, low, _ in over_bushes[2:])
+        self._slips = np.maximum(np.arange(self._low.size) - (self._low.size - slipping), -1)
 
     def held(self, shares: Array, others: float = 1.0, still: Collection[str] = ()) -> Reach:
         """The same with limits of which motions may use `shares` (S, KINDS), of those over no bush `others`. Channels
@@ -201,6 +210,23 @@ class Reach:
         """How much of the tightest limit a motion takes up: it may be larger by the inverse of this."""
         return float(max(side.max() for side in self._shares(coefficients)))
 
+    def alone(self) -> Array:
+        """What one unit of each coefficient alone uses of the limits, (size,)."""
+        each = zip(self._watched, self.deflection, strict=True)
+        return np.array([max(side.max() for side in self._shares_of(*one)) for one in each])
+
+    def close(self, coefficients: Array, above: float) -> Reach:
+        """The same with those limits alone of which a motion takes up more than a share: few of them, and quick."""
+        found = copy(self)
+        series = np.flatnonzero(
+            np.max([side.max(axis=1) for side in self._shares(coefficients)], axis=0) > above
+        )
+        found._watched = np.ascontiguousarray(self._watched[:, series])
+        found._low, found._high, found._group, found._slips = (
+            one[series] for one in (self._low, self._high, self._group, self._slips)
+        )
+        return found
+
     def near(self, coefficients: Array, above: float = NEAR) -> tuple[Array, Array]:
         """Where a motion takes up more than a share of a limit, for every series its worst time: how that share goes
         with the coefficients, (m, size), and what is left of it, (m,)."""
@@ -215,46 +241,19 @@ class Reach:
 
     def _shares(self, coefficients: Array) -> tuple[Array, Array]:
         """Of its limits downwards and upwards, what every series (series, N) takes up."""
-        watched = self.of(self._watched, coefficients)
-        slipping = self._slipping(coefficients)
-        watched[-len(slipping) :] += slipping
+        return self._shares_of(self.of(self._watched, coefficients), self.of(self.deflection, coefficients))
+
+    def _shares_of(self, watched: Array, bent: Array) -> tuple[Array, Array]:
+        """The same of what plain springs make of every series (series, N) and of the bends (S, feet, 2, N)."""
+        slip = self._slips >= 0
+        watched = watched.copy()
+        watched[slip] += self._slipping(bent)[self._slips[slip]]
         return -watched / self._low[:, None], watched / self._high[:, None]
 
-    def _slipping(self, coefficients: Array) -> Array:
-        """What the elements beside the springs add to the series of the soles' edges and of friction, which come last,
-        (series, N)."""
-        bent = self.of(self.deflection, coefficients)
+    def _slipping(self, bent: Array) -> Array:
+        """What the elements beside the springs add to the series of the soles' edges and of friction, (series, N)."""
         states = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
         torque = self.element[:, None] * states
         edges = [outward(normals, torque[:, place]) for place, (normals, _) in enumerate(self._edges)]
         sides = [self._aside(place, torque) for place in range(len(self.feet))]
         return np.concatenate([one.reshape(-1, bent.shape[-1]) for one in (*edges, *sides)])
-
-
-def ends(normals: Array) -> Mask:
-    """Which edges of a sole, by their normals (n, 2), are its ends, and not its sides."""
-    return np.asarray(np.abs(normals[:, 0]) > np.abs(normals[:, 1]))
-
-
-def margin_kept(polygon: Array) -> float:
-    """Distance [m] from a sole's border that the centre of pressure keeps."""
-    return float(min(EDGE, SMALLER_EDGE * np.ptp(polygon, axis=0).min() / 2))
-
-
-def outward(normals: Array, torque: Array) -> Array:
-    """Torques of a bush about pitch and roll (..., 2, N) towards each edge (..., n, N): the centre of pressure is
-    (-torque pitch, torque roll)/load from below the bush."""
-    return np.asarray(-np.einsum("ek,...kn->...en", normals, torque * [[-1.0], [1.0]]))
-
-
-def _edges(legs: Legs, foot: str) -> tuple[Array, Array]:
-    """Inward normals (n, 2) of a sole's edges in the world's axes, and the room (n,) [m] of a centre of pressure
-    below the bush to each, less the margin."""
-    entry = legs.body.robot.feet[foot]
-    sole = legs.start.soles[foot]
-    bush = legs.rest[2][foot].translation
-    corners = np.array([sole.act(np.array([*corner, 0.0]))[:2] for corner in entry.sole.polygon]) - bush[:2]
-    corners = convex_hull(corners)
-    along = np.roll(corners, -1, axis=0) - corners
-    normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
-    return normals, -np.sum(normals * corners, axis=1) - margin_kept(corners)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,15 +17,19 @@ from plantar.design.reach import Reach
 
 # Of which the best end counts: limits have corners in which a way ends, and some frequencies go badly together.
 STARTS: Final = 8
-TRIES: Final = 25  # linear programs from each start at most
+TRIES: Final = 25  # steps from each start at most
+# After so many steps the best of all ways are followed to their ends: what is far behind by then stays so.
+TRIED: Final = 8
+FOLLOWED: Final = 3
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
-BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
+BEGIN, SMALLEST, FARTHEST = 0.3, 0.01, 0.3  # how far a step goes, of coefficients that are just allowed
 # Motions beside one whose values are computed together: ten minutes of them fit into memory
-AT_ONCE: Final = 10
+AT_ONCE: Final = 2
 # Programs of one step at most: each knows, beside what the motion comes near, the limits that the one before passed.
 # So few of thousands make a program quick.
 CUTS: Final = 10
 PASSED: Final = 1.0  # of a limit
+CLOSE: Final = 0.3  # of a limit: those that a step watches
 SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
 GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not
 # Where the search begins: over the left foot, whose ankle moves more than the other and than the body.
@@ -50,35 +55,42 @@ def best_motion(
     limits and a box around the motion allow, which is a linear program.
     """
 
-    def end(place: int) -> tuple[float, int, Lines, Array]:
+    def followed(place: int, tries: int, far: float = BEGIN, motion: Array | None = None) -> _Way:
         random = np.random.default_rng([seed, place])
         lines, stance = Lines.drawn(duration, random), place % len(stances)
         reach = stances[stance](lines)
-        least, found = _end(reach, criterion, _start(random) / _alone(reach), known)
-        return least, stance, lines, found
+        units = 1.0 / reach.alone()
+        climb = _Climb(
+            reach, criterion, known, units, _start(random) * units if motion is None else motion, far
+        )
+        climb.go(tries)
+        return _Way(climb.least, place, climb.far, lines, climb.best)
 
     progress(f"search from {STARTS} beginnings")
-    _, stance, lines, coefficients = min(over_cores(end, range(STARTS)), key=lambda found: found[0])
-    return stance, lines, coefficients
+    ways = over_cores(lambda place: followed(place, TRIED), range(STARTS))
+    best = sorted(ways, key=lambda way: way.least)[:FOLLOWED]
+    progress(f"search on from the best {len(best)}")
+    ends = over_cores(lambda way: followed(way.place, TRIES - TRIED, way.far, way.motion), best)
+    way = min([*ends, *best], key=lambda way: way.least)
+    return way.place % len(stances), way.lines, way.motion
 
 
 def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:
-    """The same from one beginning, a motion that is known, where limits are no longer what they were."""
-    return _end(reach, criterion, start, known)[1]
+    """The same from one beginning, a motion that is known, where limits are no longer what they were: a few steps."""
+    climb = _Climb(reach, criterion, known, 1.0 / reach.alone(), start, BEGIN)
+    climb.go(TRIED)
+    return climb.best
 
 
-def _end(reach: Reach, criterion: Criterion, start: Array, known: Array | float) -> tuple[float, Array]:
-    """What is minimised where a way through the limits ends, and the motion there."""
-    climb = _Climb(reach, criterion, known, 1.0 / _alone(reach), start)
-    for _ in range(TRIES):
-        if not climb.step():
-            break
-    return climb.least, climb.best
+@dataclass(frozen=True)
+class _Way:
+    """How far a way from one beginning came: what is minimised there, which beginning, how far the next step goes."""
 
-
-def _alone(reach: Reach) -> Array:
-    """What one unit of each coefficient alone uses of the limits, (size,)."""
-    return np.array([reach.used(row) for row in np.eye(reach.lines.size)])
+    least: float
+    place: int
+    far: float
+    lines: Lines
+    motion: Array
 
 
 def _start(random: np.random.Generator) -> Array:
@@ -94,45 +106,60 @@ class _Climb:
     """One way through the limits: `best`, the motion reached, and `least`, what is minimised there."""
 
     def __init__(
-        self, reach: Reach, criterion: Criterion, known: Array | float, units: Array, start: Array
+        self,
+        reach: Reach,
+        criterion: Criterion,
+        known: Array | float,
+        units: Array,
+        start: Array,
+        far: float,
     ) -> None:
-        self._reach, self._units, self._far = reach, units, BEGIN
+        self._reach, self._units, self.far = reach, units, far
         self._criterion, self._known = criterion, known
-        self._slope: Array | None = None  # at the best motion, once known
-        self.best = start / reach.used(start)
+        self._at(start / reach.used(start))
         self.least = float(self._value(self.best))
+
+    def _at(self, motion: Array) -> None:
+        """The best motion is another: its slope is yet to be found, and so are the limits that it comes near."""
+        self.best = motion
+        self._slope: Array | None = None
+        self._close = self._reach.close(motion, CLOSE)
 
     def _value(self, coefficients: Array) -> Array:
         return badness(self._reach, coefficients, self._criterion, self._known)
 
-    def step(self) -> bool:
-        """To a better motion, or none: then the next step is smaller. Whether another may help."""
+    def go(self, tries: int) -> None:
+        """So many steps at most."""
+        for _ in range(tries):
+            if self.far <= SMALLEST:
+                break
+            self._step()
+
+    def _step(self) -> None:
+        """To a better motion, or none: then the next step is smaller."""
         if self._slope is None:
             beside = self.best + np.diag(SMALL * self._units)
             parts = np.split(beside, range(AT_ONCE, len(beside), AT_ONCE))
             self._slope = np.concatenate([self._value(part) for part in parts]) - self.least
-        rows, left = self._reach.near(self.best)
-        tried, used = self.best, 1.0
+        tried, (rows, left) = self.best, self._close.near(self.best)
         for _ in range(CUTS):
             found = linprog(
                 self._slope / SMALL,
                 A_ub=rows * self._units,
                 b_ub=np.maximum(left, 0.0),
-                bounds=(-self._far, self._far),
+                bounds=(-self.far, self.far),
             )
             if not found.success:
                 break
             tried = self.best + self._units * found.x
-            more, room = self._reach.near(tried, PASSED)
-            used = 1.0 - room.min(initial=0.0)
-            if used < 1.0 + SLIGHT:
+            more, room = self._close.near(tried, PASSED)
+            if room.min(initial=0.0) > -SLIGHT:
                 break
             rows, left = np.vstack([rows, more]), np.append(left, room + more @ (tried - self.best))
-        tried = tried / used
+        tried = tried / max(self._reach.used(tried), 1.0)
         value = float(self._value(tried))
         if value < self.least:
-            self.best, self.least, self._slope = tried, value, None
-            self._far = min(GROW * self._far, FARTHEST)
+            self._at(tried)
+            self.least, self.far = value, min(GROW * self.far, FARTHEST)
         else:
-            self._far *= SHRINK
-        return self._far > SMALLEST
+            self.far *= SHRINK

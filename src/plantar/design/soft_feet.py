@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from plantar.conventions import GRAVITY, Array
 from plantar.errors import MotionError
@@ -74,12 +75,11 @@ class Pendulum:
 
 @dataclass(frozen=True)
 class Response:
-    """What the bushes do, by foot: `deflection` (..., 2, N) pitch, roll [rad], `rate` [rad/s], `torque` (..., 2, N)
-    [N·m], `load` (..., N) [N] without the share of the weight that the feet carry at rest."""
+    """What the bushes do, by foot: `deflection` (..., 2, N) pitch, roll [rad], `rate` [rad/s], `load` (..., N) [N]
+    without the share of the weight that the feet carry at rest."""
 
     deflection: Mapping[str, Array]
     rate: Mapping[str, Array]
-    torque: Mapping[str, Array]
     load: Mapping[str, Array]
 
 
@@ -95,11 +95,11 @@ def respond(
 
     `wrench` (..., 3, N): vertical force [N] and moments about x and y at the middle of the bushes [N·m] that the
     motion asks of the ground, less those at rest. `tilts`: by foot, roll and pitch of the ankle against the floor,
-    (..., 2, N) [rad]. `period` [s]. `beside`: stiffness of what stands beside the springs of pitch and roll [N·m/rad],
-    no part of the torque. All begin and end at rest.
+    (..., 2, N) [rad]. `period` [s]. `beside`: stiffness of what stands beside the springs of pitch and roll [N·m/rad].
+    All begin and end at rest.
     """
     count = wrench.shape[-1]
-    size = count + round(SILENCE / period)
+    size = next_fast_len(count + round(SILENCE / period), real=True)
     s = 2j * np.pi * np.fft.rfftfreq(size, period)
     asked = np.fft.rfft(wrench, size)
     turned = {foot: np.fft.rfft(tilt, size) for foot, tilt in tilts.items()}
@@ -122,9 +122,9 @@ def respond(
     def back(values: Array) -> Array:
         return np.asarray(np.fft.irfft(values, size)[..., :count])
 
-    deflection, rate, torque, load = {}, {}, {}, {}
+    deflection, rate, load = {}, {}, {}
     for foot, (x, y) in pendulum.places.items():
         bent = -(turned[foot] + moved[..., 1:, :])[..., ::-1, :]  # pitch, roll of the sole against the ankle
-        deflection[foot], rate[foot], torque[foot] = back(bent), back(s * bent), back(spring * bent)
+        deflection[foot], rate[foot] = back(bent), back(s * bent)
         load[foot] = back(-press * np.einsum("i,...if->...f", np.array([1.0, y, -x]), moved))
-    return Response(deflection, rate, torque, load)
+    return Response(deflection, rate, load)

@@ -10,15 +10,16 @@ import numpy as np
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import Array
-from plantar.cores import blas_on_one_core, over_cores
-from plantar.design.collision import free_swing, self_collision
+from plantar.cores import blas_on_one_core
+from plantar.design.collision import free_swing
 from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.reach import BEND, FRICTION, KINDS, LIFT, Reach
-from plantar.design.rehearsal import Rehearsal, rehearse
+from plantar.design.reach import KINDS, Reach
+from plantar.design.rehearsals.attempt import LEFT, Attempt, until_it_holds
+from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.search import best_motion, better_motion
 from plantar.design.soft_feet import CARRIED, Softness
 from plantar.design.trajectory import Trajectory
@@ -28,21 +29,6 @@ from plantar.robot.model import RobotModel
 from plantar.twin.play import postures_of
 
 SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
-# m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm.
-KEPT: Final = 0.0055
-# Share of their limits that motions may use before any is rehearsed: joints give way under load, of which limits that
-# are linear know nothing.
-LEFT: Final = 0.87
-# A limit that a rehearsal passes is held to half of what that is too much, as centres of pressure run ahead where a
-# sole begins to roll; at most so much less.
-SMALLER: Final = 0.85
-# m: a centre of pressure never leaves a sole. One at the border, to what its computation misses by, does not say how
-# much too large a motion is: its limit is held to as much less as it may.
-TIPS: Final = 0.0005
-SPARE: Final = 0.005  # less than what is just allowed
-BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
-ROUNDS: Final = 12
-EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
 # Times the distance between the feet by which the right one may stand ahead. Side by side, legs alone roll the ankles:
 # all feet bend alike, so the stiffest limit all. A foot ahead lets the body's lean roll them, too, most on soft feet;
@@ -158,13 +144,13 @@ def design_motion(
         [reach_of(*each) for each in stances], settings.duration, settings.criterion, settings.seed, before, progress
     )  # fmt: skip
     legs, linear = stances[place]
-    motion = _Attempt(
+    motion = Attempt(
         Reach(legs, linear, lines, told, bushes),
         lambda limits, start: better_motion(limits, settings.criterion, start, before),
         found,
         _rehearsed_at(*factors),
     )
-    coefficients, rehearsals, pairs = _rehearsed(motion, legs, told, progress)
+    coefficients, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
     return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
 
 
@@ -195,150 +181,9 @@ def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float,
     return known.stiffness, known.low, known.high
 
 
-@dataclass
-class _Attempt:
-    """A motion while rehearsals show how much of each limit it may use.
-
-    Where it uses more of one than holds, that limit is held to less, at that stiffness alone, and the search goes on. A
-    stiffness that amplifies does not make the motion small at others.
-    """
-
-    reach: Reach
-    better: Callable[[Reach, Array], Array]  # a motion that is better, or within other limits, than one
-    coefficients: Array
-    factors: tuple[float, ...]
-    shares: Array = field(init=False)  # (S, KINDS) of the limits over each bush
-    others: float = 1.0  # share of the limits over no bush
-    still: tuple[str, ...] = ()
-    first: list[float] = field(
-        init=False
-    )  # factors of the stiffness at which it is rehearsed before the others
-    rehearsals: dict[float, Rehearsal] = field(default_factory=dict)  # of the motion as it is, by factor
-
-    def __post_init__(self) -> None:
-        self.shares = np.full((len(self.factors), len(KINDS)), LEFT)
-        self.first = [self.factors[0], self.factors[-1]]
-
-    def search_on(self) -> None:
-        """Within the limits as they are now."""
-        within = self.reach.held(self.shares, self.others, self.still)
-        self.coefficients, self.rehearsals = self.better(within, self.coefficients), {}
-
-    def shrink(self) -> None:
-        """Smaller in all."""
-        self.shares, self.others = SMALLER * self.shares, SMALLER * self.others
-        self.search_on()
-
-    def lower_arms(self) -> bool:
-        """Leave the arms out, where they move. False: nothing changed."""
-        still = self.reach.lines.without(self.coefficients, "arms")
-        if self.still or np.array_equal(still, self.coefficients):
-            return False
-        self.coefficients, self.still = still, ("arms",)
-        self.search_on()
-        return True
-
-    def adapt(self) -> None:
-        """Search on within limits as rehearsals found them: what used too much may use less."""
-        rows = [self.factors.index(factor) for factor in self.rehearsals]
-        used = np.array([_used(one)[0] for one in self.rehearsals.values()])
-        foretold, shares = self.reach.used_by_kind(self.coefficients)[rows], self.shares[rows]
-        change = np.clip((1 - SPARE) / np.sqrt(np.maximum(used, 1.0)), SMALLER, 1.0)
-        change[used <= 1] = 1.0
-        self.first = [factor for factor, own in zip(self.rehearsals, used, strict=True) if own.max() > 1]
-        # What lies between is held to shares between; what failed far from its limit is held to less than it used.
-        order = np.argsort(rows)
-        places = np.log(self.factors)
-        for kind, own in enumerate(np.log(change[order]).T):
-            self.shares[:, kind] *= np.exp(np.interp(places, places[np.array(rows)[order]], own))
-        self.shares[rows] = np.where(used > 1, change * np.minimum(shares, foretold), shares)
-        self.search_on()
-
-    def next_factors(self) -> list[float]:
-        """At which stiffness to rehearse next."""
-        left = sorted(
-            (each for each in self.factors if each not in self.rehearsals),
-            key=lambda each: each not in self.first,
-        )
-        urgent = sum(each in self.first for each in left)
-        return left[: max(urgent, BESIDE)] if urgent else left
-
-
-def _rehearsed(
-    motion: _Attempt, legs: Legs, told: Softness, progress: Callable[[str], None]
-) -> tuple[Array, list[Rehearsal], int]:
-    """The motion within limits at which it holds at every stiffness. Raises MotionError where none does.
-
-    A rehearsal takes seconds: the ends of the range come first, and after a change those at which it did not hold. In
-    the end all hold with the motion as it is.
-    """
-    robot, reason = legs.body.robot, ""
-    for _ in range(ROUNDS):
-        try:
-            trajectory = Trajectory.of("design", legs, motion.reach.lines, motion.coefficients)
-        except MotionError as error:
-            reason = str(error)
-            progress(f"smaller: {reason}")
-            motion.shrink()
-            continue
-        watched = self_collision(robot, trajectory.configurations)
-        if watched.touching is not None:
-            first, second, row = watched.touching
-            reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
-            quiet = motion.lower_arms()
-            progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
-            if not quiet:
-                motion.shrink()
-            continue
-        plan, used = trajectory.plan(), 0.0
-        while used <= 1.0 and (asked := motion.next_factors()):
-            found = rehearse(robot, plan, told, asked, progress)
-            used, reason = max(((float(each.max()), why) for each, why in map(_used, found)))
-            motion.rehearsals |= {one.factor: one for one in found}
-        if used > 1.0:
-            progress(f"smaller: {reason}")
-            motion.adapt()
-            continue
-        progress("identify the feet from the rehearsals")
-        rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in motion.factors])
-        return motion.coefficients, rehearsals, watched.pairs
-    raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
-
-
-def _with_results(robot: RobotModel, rehearsals: list[Rehearsal]) -> list[Rehearsal]:
-    """The rehearsals with the feet identified from their recordings, as far as they can be."""
-    results = over_cores(lambda one: one.feet_found(robot), rehearsals)
-    return [replace(one, results=found) for one, found in zip(rehearsals, results, strict=True)]
-
-
 def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:
     """Times the stiffness told: that, both ends, and between them, where a robot may resonate.
 
     Twice towards the stiff end: there quick motions of a small robot resonate within a few tenths of the stiffness.
     """
     return tuple(sorted({low, low**0.5, 1.0, high**0.5, high**0.75, high}))
-
-
-def _used(one: Rehearsal) -> tuple[Array, str]:
-    """How much of each of the KINDS of limits a rehearsal took up, above 1 where it does not hold, and the tightest.
-    What falls or asks too much of a joint takes up too much of all."""
-    at = f"at {one.factor:.3g} times the stiffness"
-    if one.fell is not None:
-        return np.full(len(KINDS), np.inf), f"{at}: {one.fell}"
-    soles = [
-        (rest - near) / (rest - KEPT) if rest > KEPT and near > TIPS else np.inf
-        for near, rest in zip(one.sole_margins, one.standing_margins, strict=True)
-    ]
-    used = np.array([*soles, one.friction / FRICTION, (1 - one.least_load) / (1 - LIFT), one.bend / BEND])
-    close = f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
-    said = [
-        close,
-        close,
-        f"{at} a foot needs a friction of {one.friction:.2f}",
-        f"{at} a foot keeps {100 * one.least_load:.0f} % of its load",
-        f"{at} a foot is bent by {one.bend:.2f} rad",
-        f"{at} a joint needs {100 * one.effort:.0f} % of its torque limit",
-    ]
-    effort = one.effort / EFFORT
-    tightest = said[int(np.append(used, effort).argmax())]
-    return np.maximum(used, effort if effort > 1 else 0.0), tightest

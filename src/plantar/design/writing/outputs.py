@@ -11,8 +11,9 @@ from plantar.choices import number_in, one_of
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.reach import FRICTION
-from plantar.design.rehearsal import Rehearsal
-from plantar.design.story import EFFORT, KEPT, Design
+from plantar.design.rehearsals.attempt import EFFORT, KEPT
+from plantar.design.rehearsals.rehearsal import Rehearsal
+from plantar.design.story import Design
 from plantar.design.writing import promised
 from plantar.design.writing.controllers import TARGETS, ordered_joints
 from plantar.design.writing.foretold import foretold

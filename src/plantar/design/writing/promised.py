@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import NORMAL95
-from plantar.design.rehearsal import Rehearsal
+from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.story import Design
 from plantar.results.feet import FeetResult, Parameter
 from plantar.twin.presets import DEFAULT, preset_named

@@ -10,8 +10,8 @@ import numpy as np
 
 from plantar.contact.polygon import edge_distances, edge_normals
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
-from plantar.design.reach import ends
 from plantar.design.soft_feet import Softness
+from plantar.design.soles import ends
 from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog

@@ -1,0 +1,1 @@
+"""A motion played on the twin before any robot plays it."""
