@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from plantar.contact import phases, slip_indicator, stances
-from plantar.design import information, reach, story
+from plantar.design import information, reach, soles
+from plantar.design.rehearsals import attempt
 from plantar.estimation import residual_covariance, slow_drift, stance_least_squares
 from plantar.feet.assess import verdicts
 from plantar.feet.exclusion import edge_rolling, moved_edges
@@ -25,7 +26,7 @@ from plantar.sensors.delays import lagged_log
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {3: "three", 5: "five"}
 CM, DEGREES = 100 * place_notes.FARTHEST[0], np.degrees(place_notes.FARTHEST[2])
-SOLES = 1e3 * reach.EDGE, 1e3 * story.KEPT
+SOLES = 1e3 * soles.EDGE, 1e3 * attempt.KEPT
 
 
 @cache
@@ -94,8 +95,8 @@ def page(name: str) -> str:
         ("how_to/design.md", f"with {SOLES[0]:g} mm to the border"),
         (
             "how_to/design.md",
-            f"must stay {SOLES[1]:g} mm inside the soles, horizontal forces below {story.FRICTION:g} of vertical ones, "
-            f"and torques below {story.EFFORT:g} of the URDF's limits",
+            f"must stay {SOLES[1]:g} mm inside the soles, horizontal forces below {reach.FRICTION:g} of vertical ones, "
+            f"and torques below {attempt.EFFORT:g} of the URDF's limits",
         ),
     ],
 )

@@ -31,7 +31,7 @@ def found(log: MotionLog, scale: float, sensor: str = "") -> list[Finding]:
     spoiled = log.with_columns({name: scale * log.column(name) for name in names})
     stance = stance_of(hrp2.robot(), spoiled)
     assert stance is not None
-    return list(torque_unit(hrp2.robot(), stance.sides().moment_arms))
+    return list(torque_unit(hrp2.robot(), log, stance.sides().moment_arms))
 
 
 @pytest.mark.parametrize(
@@ -64,9 +64,22 @@ def test_a_scale_that_is_no_units_is_refused_without_a_name(log: MotionLog) -> N
     assert finding.text.endswith("(valid: torques in N·m)")
 
 
-def test_moments_that_do_not_go_together_tell_no_unit() -> None:
+def test_moments_that_hardly_go_together_tell_no_unit(log: MotionLog) -> None:
     """As of real robots whose masses or legs are not those of the URDF."""
-    random = np.random.default_rng(0)
-    forces, others = random.normal(0, 0.01, (2, 50, 2, 3, 3))
-    moments = np.concatenate([forces, 100 * (others - 0.5 * forces)], axis=2)
-    assert list(torque_unit(hrp2.robot(), moments)) == []
+    forces, others = np.random.default_rng(0).normal(0, 0.01, (2, 51, 2, 3, 3))
+    moments = np.concatenate([forces, 100 * (others - 0.75 * forces)], axis=2)
+    assert list(torque_unit(hrp2.robot(), log, moments)) == []
+
+
+def test_moments_that_go_together_in_part_of_a_log_tell_no_unit(log: MotionLog) -> None:
+    forces, others = np.random.default_rng(0).normal(0, 0.01, (2, 51, 2, 3, 3))
+    forces[:40] *= 0.2
+    torques = -forces
+    torques[:40] = 0.2 * others[:40]
+    assert list(torque_unit(hrp2.robot(), log, np.concatenate([forces, 100 * torques], axis=2))) == []
+
+
+def test_part_of_a_motion_tells_no_unit(log: MotionLog) -> None:
+    short = log.time < log.time[0] + 2.9
+    part = MotionLog("part", log.time[short], {name: log.column(name)[short] for name in log.columns})
+    assert found(part, 1000.0) == []

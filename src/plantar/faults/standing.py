@@ -52,7 +52,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if stance is None:
         return
     sides = stance.sides()
-    if found := list(torque_unit(robot, sides.moment_arms)):
+    if found := list(torque_unit(robot, log, sides.moment_arms)):
         yield from found
         return
     as_is = sides.misfit

@@ -8,13 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
 TORQUE_UNIT = "torque_unit"
-FOLLOWS = (
-    0.75  # correlation of both moments; of real robots whose masses or legs are otherwise it is near zero
-)
+# Correlation of both moments, and of each third of the log: of real robots whose masses or legs are otherwise it is
+# near zero, but for a part of a log by chance.
+FOLLOWS, IN_PARTS = 0.75, 0.4
+SHORTEST = 3.0  # s of a log: a shorter one is part of a motion
+STILL = 0.03  # of the squares: a third of the log that moves less tells nothing
 ANOTHER_UNIT = 3.0  # times too large or too small: no gain is as wrong
 BETTER = 0.99  # share of what all torques leave: below it those of one foot alone are in another unit
 LIKE = 1.4  # times: what moves makes moments, too
@@ -22,27 +25,35 @@ UNITS = {0.001: "N·mm", 0.01: "N·cm", 9.80665: "kgf·m", 0.0980665: "kgf·cm",
 
 
 class _Scale(NamedTuple):
-    """By how much torques of `columns` must be larger to balance the rest of the moments, how these correlate, and the
-    squares that are then left [m²]."""
+    """By how much torques of `columns` must be larger to balance the rest of the moments, how these correlate, the
+    `squares` of the rest and what is then left of them [m²]."""
 
     left: float
+    squares: float
     correlation: float
     scale: float
     columns: str
+    feet: tuple[int, ...]
 
 
-def torque_unit(robot: RobotModel, moment_arms: Array) -> Iterator[Finding]:
+def torque_unit(robot: RobotModel, log: MotionLog, moment_arms: Array) -> Iterator[Finding]:
     """A fatal finding where the torques of all feet, or of one, follow the other moments at another scale.
 
     Without an accelerometer nothing else would tell: another unit looks like other rubber. moment_arms (n, feet, 6, 3)
     [m], as in `StanceSides`.
     """
+    if log.duration < SHORTEST:
+        return
     sensors = [foot.wrench.name for foot in robot.feet.values()]
-    found = _scale(moment_arms, [*range(len(sensors))], "columns 'wrench.*.torque.*'")
+    found = _scale(moment_arms, tuple(range(len(sensors))), "columns 'wrench.*.torque.*'")
     for place, sensor in enumerate(sensors):
-        alone = _scale(moment_arms, [place], f"columns 'wrench.{sensor}.torque.*'")
+        alone = _scale(moment_arms, (place,), f"columns 'wrench.{sensor}.torque.*'")
         found = alone if alone.left < BETTER * found.left else found
     if found.correlation < FOLLOWS or 1 / ANOTHER_UNIT < found.scale < ANOTHER_UNIT:
+        return
+    parts = [_scale(part, found.feet, found.columns) for part in np.array_split(moment_arms, 3)]
+    moved = [part for part in parts if part.squares > STILL * found.squares]
+    if len(moved) < 2 or min(part.correlation for part in moved) < IN_PARTS:
         return
     nearest = min(UNITS, key=lambda unit: abs(np.log(unit / found.scale)))
     like = f"; these look like {UNITS[nearest]}" if 1 / LIKE < nearest / found.scale < LIKE else ""
@@ -51,14 +62,16 @@ def torque_unit(robot: RobotModel, moment_arms: Array) -> Iterator[Finding]:
     yield Finding(TORQUE_UNIT, f"{text} (valid: torques in N·m{like})", True)
 
 
-def _scale(moment_arms: Array, feet: list[int], columns: str) -> _Scale:
-    torques = _moving(moment_arms[:, feet, 3:].sum(axis=(1, 2)))
+def _scale(moment_arms: Array, feet: tuple[int, ...], columns: str) -> _Scale:
+    torques = _moving(moment_arms[:, [*feet], 3:].sum(axis=(1, 2)))
     rest = _moving(moment_arms.sum(axis=(1, 2))) - torques
     together, squares = -float(np.sum(rest * torques)), (float(np.sum(torques**2)), float(np.sum(rest**2)))
     if not together > 0:
-        return _Scale(np.inf, 0.0, 1.0, columns)
+        return _Scale(squares[1], squares[1], 0.0, 1.0, columns, feet)
     correlation = together / np.sqrt(squares[0] * squares[1])
-    return _Scale(squares[1] * (1 - correlation**2), correlation, together / squares[0], columns)
+    return _Scale(
+        squares[1] * (1 - correlation**2), squares[1], correlation, together / squares[0], columns, feet
+    )
 
 
 def _moving(moments: Array) -> Array:

@@ -45,7 +45,7 @@ def test_a_delay_is_asked_of_sensors_that_can_show_it(tmp_path: Path) -> None:
     blind = prepare_all(robot, [without(log, "linear_acceleration")], [], KNOWN, str).fitted
     assert remedies(KNOWN, UNKNOWN, robot, blind)["delay"].startswith("record the accelerometer of the IMU")
     seeing = prepare_all(
-        robot, [replace(without(log, "linear_acceleration"), name="other"), log], [], KNOWN, str
+        robot, [without(record(sway("other", 2, duration=12.0)), "linear_acceleration"), log], [], KNOWN, str
     ).fitted
     assert "delay" not in remedies(KNOWN, UNKNOWN, robot, seeing), "arm sweeps, as ever"
     shown = SensorDelay(0.002, 0.001, np.inf, True, UNKNOWN.note)
