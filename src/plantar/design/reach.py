@@ -19,9 +19,8 @@ from plantar.twin.presets import DEFAULT, preset_named
 
 RATE: Final = 20.0  # Hz: eight samples in the quickest sine
 FINER: Final = 2  # times: of what is differentiated
-FIRM_RATE: Final = (
-    10.0  # Hz, of what stiffness and damping show in: eight samples in the quickest sine of an ankle
-)
+# Hz, of what stiffness and damping show in: eight samples in the quickest sine of an ankle
+FIRM_RATE: Final = 10.0
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 SIDES: Final = 8  # of the polygon that stands for the circle of friction
 LIFT: Final = 0.35  # of its load at rest that every foot keeps at least

@@ -1,5 +1,6 @@
-"""Joints between IMU and foot that are not read as the robot file says: a few per cent too much, late by themselves, or
-behind by the play of their encoder's drive; or the IMU itself, whose soft mount lets it tilt as it is accelerated.
+"""Joints between IMU and foot that are not read as the robot file says: a few per cent too much, late by themselves or
+all together, or behind by the play of their encoder's drive; or the IMU itself, whose soft mount lets it tilt as it is
+accelerated.
 
 While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
 too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
