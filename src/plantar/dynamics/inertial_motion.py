@@ -23,16 +23,21 @@ from plantar.signals.resampling import shifted
 class InertialSignals:
     """Joint `positions` (n, joints), the IMU's angular velocity `rate` [rad/s] and `proper` acceleration (n, 3), all
     of them filtered without lag.
+
+    `by_encoders` (n, 3): how an acceleration that comes from encoders changes with the moment at which these are read
+    [m/s³]; None of an accelerometer.
     """
 
     positions: Array
     rate: Array
     proper: Array
     period: float
+    by_encoders: Array | None = None
 
     def during(self, run: slice) -> InertialSignals:
         """The signals of some consecutive samples alone."""
-        return InertialSignals(self.positions[run], self.rate[run], self.proper[run], self.period)
+        slopes = None if self.by_encoders is None else self.by_encoders[run]
+        return InertialSignals(self.positions[run], self.rate[run], self.proper[run], self.period, slopes)
 
     @cached_property
     def joints(self) -> tuple[Array, Array, Array]:
@@ -71,9 +76,10 @@ def inertial_motion(
     encoders_late, gyroscope_late: by which these report late [s].
     """
     joints = _joint_motion(signals, kept, encoders_late)
-    return Motion(
-        root_motion(equation, *_imu(robot), _measured(signals, kept, gyroscope_late), *joints), *joints
-    )
+    measured = _measured(signals, kept, gyroscope_late)
+    if signals.by_encoders is not None:
+        measured[:, :3] += encoders_late * signals.by_encoders[kept]
+    return Motion(root_motion(equation, *_imu(robot), measured, *joints), *joints)
 
 
 def turned_motions(

@@ -18,16 +18,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from plantar.contact.deflection import FootMotion, foot_motion, path_to
 from plantar.contact.phases import carried_weight, detect_contact
-from plantar.conventions import FORCE, GRAVITY, NORMAL95, Array, rotation_from_quaternion
+from plantar.contact.standing_acceleration import standing_feet
+from plantar.conventions import GRAVITY, NORMAL95, Array, rotation_from_quaternion
 from plantar.estimation.weighted_mean import weighted_mean
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.imu_filter import ImuFilter
-from plantar.sensors.tilt_error import DERIVED, TOLD, enough_of, lean_of, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import DERIVED, TOLD, enough_of, lean_of, stance_leans
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.orientation import unit_quaternions
 from plantar.signals.resampling import shifted, with_continuous_quaternions
 from plantar.signals.segments import runs
 
@@ -187,7 +188,7 @@ def _leans(
 ) -> Iterator[Array]:
     """Of each stance the lean about both axes and what goes with it, (n, 2, 11) [rad, and per unit], at `every` nth
     sample."""
-    period, (feet, forces) = log.period, _feet(robot, log, orientation)
+    period, (feet, forces) = log.period, standing_feet(robot, log, orientation)
     contacts = detect_contact(
         {name: low_pass(force, period, DERIVED) for name, force in forces.items()},
         {name: foot.contact == "always" for name, foot in robot.feet.items()},
@@ -214,18 +215,3 @@ def _leans(
         about, across = ([each * side for each in (tilted, higher)] for side in np.eye(2))
         swapped = np.column_stack([-tilted[:, 1], tilted[:, 0]])
         yield np.stack([lean, late, behind, *about, *across, turned, swapped, *leant], axis=2)
-
-
-def _feet(
-    robot: RobotModel, log: MotionLog, orientation: Array
-) -> tuple[dict[str, FootMotion], dict[str, Array]]:
-    """Where the soles are, without rates, and what each foot carries (N,) [N]."""
-    positions, still = log.positions(robot), np.zeros((len(log), 3))
-    velocities, motions, forces = np.zeros_like(positions), dict[str, FootMotion](), dict[str, Array]()
-    for name, foot in robot.feet.items():
-        path, _, to_bush = path_to(robot, name)
-        motions[name] = motion = foot_motion(path, positions, velocities, orientation, still)
-        turn = (to_bush * robot.frame(foot.wrench.placement)[1]).rotation
-        read = foot.wrench.sign * log.wrench(foot.wrench.name)[:, FORCE] @ turn.T
-        forces[name] = np.einsum("ni,ni->n", motion.up, read)
-    return motions, forces

@@ -21,8 +21,9 @@ from plantar.estimation.slow_drift import drift_basis
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import TOLD, enough_of, lean_of, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import TOLD, enough_of, lean_of, stance_leans
 from plantar.signals.filters import low_pass
+from plantar.signals.orientation import unit_quaternions
 
 ATTITUDE_SCALE = "attitude_scale"
 # An accelerometer whose axes differ by 2 % shows as much, and so does a URDF with wrong lengths.

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import FORCE, GRAVITY, TORQUE, Array
 from plantar.dynamics import Contact, Equation
 from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
+from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
 from plantar.sensors.model_errors import drawn_parameter_errors
@@ -38,16 +39,17 @@ TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 @dataclass(frozen=True)
 class MomentErrors:
-    """One log's `columns` (6, k, n), and what they must add up to, `missing` (6, n).
+    """One log's `columns` (rows, k, n), and what they must add up to, `missing` (rows, n).
 
-    The first axis is the six rows of Newton's law.
+    The first axis is the six rows of Newton's law, or, of a log without an accelerometer, the moments about the centre
+    of mass: how the robot accelerates does not enter them.
 
     The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else
     each foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the
     encoders, of the gyroscope, and of all torques about pitch and about roll behind the forces. Behind them stand
     the log's own zeros of each channel of each foot, with deviations `zeros` (z,): at an arm that moves with the
-    robot, a zero does not stay a constant. `products` (parts, 6, k + 1, k + 1) are those of missing and columns in
-    each part of the log, without what the sensors' noise adds to them; `drawn` (6, k, draws) those of columns and
+    robot, a zero does not stay a constant. `products` (parts, rows, k + 1, k + 1) are those of missing and columns in
+    each part of the log, without what the sensors' noise adds to them; `drawn` (rows, k, draws) those of columns and
     what a wrong URDF adds; `independent` is the share of samples [each `period` s] that are.
     """
 
@@ -71,25 +73,30 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     motion = inertial_motion(
         robot, equation, residual.signals, residual.kept, encoders_late=residual.encoders_late
     )
+    centre = (
+        None if residual.accelerated else centre_of_mass(robot.model, *robot.tree.poses(motion.positions))
+    )
     read = [
-        _SensorReadings.of(robot, equation, residual, place, motion.positions)
+        _SensorReadings.of(robot, equation, residual, place, motion.positions, centre)
         for place in range(len(robot.feet))
     ]
     zeros = [-channel for one in read for channel in one.transfer.transpose(2, 0, 1)]
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
-    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *by_torques, *zeros]
-    errors = equation.base_wrenches(motion, drawn_parameter_errors(robot))
+    by_motion = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
+    slopes = [*(_about(centre, rows) for rows in by_motion), *by_torques, *zeros]
+    errors = _about(centre, equation.base_wrenches(motion, drawn_parameter_errors(robot)))
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
-    (predicted,) = equation.base_wrenches(motion, residual.parameters[None])
+    (predicted,) = _about(centre, equation.base_wrenches(motion, residual.parameters[None]))
     missing = predicted - np.sum([one.measured for one in read], axis=0)
     del residual, motion  # of all samples
     band = CUTOFF if steps else BAND
     stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
     share = _below_to_above(period) / stride
     columns, products, drawn = [], [], []
-    for row in range(6):  # of Newton's law: all at once would be the largest array of any log
+    # Row by row: all at once would be the largest array of any log.
+    for row in range(6) if centre is None else range(6)[TORQUE]:
         signals = [missing[:, row], *_in_order([one.columns(row) for one in read])]
         noisy, count = len(signals), len(signals) + len(slopes)
         signals += [one[:, row] for one in (*slopes, *errors)]
@@ -110,6 +117,14 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     return MomentErrors(
         told[:, 1:], told[:, 0], between, np.array(drawn), period, independent, zero_deviations
     )
+
+
+def _about(centre: Array | None, rows: Array) -> Array:
+    """Rows (..., n, 6) of Newton's law with the moments about `centre` (n, 3) [m], without forces; all for None."""
+    if centre is None:
+        return rows
+    moments = rows[..., TORQUE] - np.cross(centre, rows[..., FORCE])
+    return np.concatenate([np.zeros_like(moments), moments], axis=-1)
 
 
 def _products(columns: Array) -> Array:
@@ -155,10 +170,12 @@ class _SensorReadings:
         residual: NewtonEulerResidual,
         place: int,
         positions: Array,
+        centre: Array | None,
     ) -> _SensorReadings:
-        """Of one of the feet, by its place; positions: of the joints (n, joints)."""
+        """Of one of the feet, by its place; positions: of the joints (n, joints); centre: as of `_about`."""
         foot, own = [*robot.feet.values()][place], slice(6 * place, 6 * place + 6)
         transfer = equation.base_transfer(positions, Contact(*robot.frame(foot.wrench.placement)))
+        transfer = _about(centre, transfer.transpose(2, 0, 1)).transpose(1, 2, 0)
         alone = np.zeros((2, 6, 6))
         alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(robot, foot)]
         by_torques = (transfer @ (alone @ residual.changes[:, own].T).transpose(2, 1, 0)).transpose(2, 0, 1)

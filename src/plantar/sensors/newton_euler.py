@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from plantar.contact.phases import shaken
+from plantar.contact.standing_acceleration import standing_acceleration
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import Contact, model_parameters
 from plantar.dynamics.equation import equation_of
@@ -56,6 +57,11 @@ class NewtonEulerResidual:
     changes: Array
     stands: bool
     encoders_late: float = 0.0
+
+    @property
+    def accelerated(self) -> bool:
+        """Whether an accelerometer said how the robot accelerates, and not the soles that stand."""
+        return self.signals.by_encoders is None
 
     def thinned(self, stride: int) -> NewtonEulerResidual:
         """Every nth sample; `pair` without its draws of wrong models."""
@@ -119,13 +125,24 @@ def with_gyroscope(robot: RobotModel, log: MotionLog) -> MotionLog | None:
     return log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
 
 
+def with_acceleration(robot: RobotModel, log: MotionLog, proper: Array) -> MotionLog:
+    """The log with a proper acceleration (N, 3) [m/s²] of its IMU."""
+    names = imu_columns(robot.required_imu.name, "linear_acceleration")
+    return log.with_columns(dict(zip(names, proper.T, strict=True)))
+
+
 def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEulerResidual]:
     """Both sides along an evenly sampled log, in each run without a gap; none where it lacks what that takes, or in
     none the law closes."""
-    complete = with_gyroscope(robot, log)
+    stood = None
+    if robot.imu is not None and not log.has_imu(robot.imu.name, "linear_acceleration"):
+        stood = standing_acceleration(robot, log)
+    complete = with_gyroscope(robot, log if stood is None else with_acceleration(robot, log, stood.proper))
     if complete is None:
         return []
     signals = inertial_signals(robot, complete, CUTOFF)
+    if stood is not None:
+        signals = replace(signals, by_encoders=low_pass(stood.by_encoders, log.period, CUTOFF))
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     runs_of_log = _known_runs(robot, signals, wrenches)
     # Of a long recording each run may have a delay of its own, hours after the last one.

@@ -25,6 +25,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.orientation import unit_quaternions
 from plantar.signals.segments import runs
 
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
@@ -124,12 +125,6 @@ def right_attitude(
     unit = unit_quaternions(orientation)
     right = put_right(unit, log.linear_acceleration(imu.name), bushes, contacts, log.period)
     return right, Note("attitude_tilted", "info", text)
-
-
-def unit_quaternions(orientation: Array) -> Array:
-    """Quaternions (N, 4) of length 1; NaN for those of none."""
-    length = np.linalg.norm(orientation, axis=1, keepdims=True)
-    return np.asarray(orientation / np.where(length > 0, length, np.nan))
 
 
 def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period: float) -> TiltError:

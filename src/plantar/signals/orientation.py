@@ -46,6 +46,12 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
     return orientation, rates
 
 
+def unit_quaternions(orientation: Array) -> Array:
+    """Quaternions (N, 4) of length 1; NaN for those of none."""
+    length = np.linalg.norm(orientation, axis=1, keepdims=True)
+    return np.asarray(orientation / np.where(length > 0, length, np.nan))
+
+
 def rates_from(orientation: Array, period: float) -> Array:
     """Angular velocity in the body frame, (N, 3), from quaternions w x y z by central differences."""
     norm = np.linalg.norm(orientation, axis=1, keepdims=True)

@@ -16,10 +16,9 @@ from plantar.conventions import Array, Mask, cross, rotated
 from plantar.estimation.velocity_drift import fit_drift
 from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
-from plantar.sensors.tilt_error import unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.medians import median
-from plantar.signals.orientation import attitude
+from plantar.signals.orientation import attitude, unit_quaternions
 from plantar.signals.segments import complete, steps_in
 
 DRIFT_RATE = 50.0  # Hz, enough for the drift

@@ -8,7 +8,7 @@ sensors; where they clearly have delays of their own, each gets its own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,8 @@ from plantar.signals.resampling import shifted
 
 # Steps: each leaves a tenth of the one before; changing between common and own delays takes some more.
 ROUNDS = 6
+# Of these: what one of the later steps cannot tell stays untold, or steps go back and forth between two answers.
+WAVERING = 3
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
 SUSPECT = 3.0  # likewise, for steps from elsewhere to be tried, where the difference is not well known
@@ -45,6 +47,7 @@ class RefinedDelays:
     `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
     `feet_unsure`, `encoders_unsure` [s]: deviations of what is known of each foot beside all, and of the encoders.
     `follows`: by how much the feet's common delay moves with the encoders', where these are found to be others.
+    `told` (feet + 1,): of which of the feet's differences, and the encoders, these logs know more than what is usual.
     `unsteady`: that they are not the same throughout, where these logs show it.
     `residuals`: of these logs, read at these delays.
     """
@@ -60,6 +63,7 @@ class RefinedDelays:
     feet_unsure: float = 0.0
     encoders_unsure: float = 0.0
     follows: float = 0.0
+    told: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
     unsteady: ClockDrift | DelaysByLog | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -87,13 +91,14 @@ def refined_delays(
 
     tried: `residuals_at` the start, where they are known.
     """
-    at = start
-    for _ in range(ROUNDS):
+    at, told = start, np.ones(len(start), dtype=bool)
+    for taken in range(ROUNDS):
         tried = tried or list(each(partial(residuals_at, robot, at), logs))
         return_freed(max((log.size for log in logs), default=0))
-        step = _step(logs, tried, at)
+        step = _step(logs, tried, at, told)
         if step is None:
             return None
+        told = told if taken < WAVERING - 1 else step.told
         moved, at, read_at = float(np.abs(step.values - at).max()), step.values, at
         if moved < SETTLED and step.std < np.inf:
             residuals = tuple(residual for own in tried for residual in own)
@@ -116,11 +121,11 @@ def residuals_at(robot: RobotModel, delays: Array, log: MotionLog) -> list[Newto
 
 
 def _step(
-    logs: Sequence[MotionLog], tried: Sequence[Sequence[NewtonEulerResidual]], at: Array
+    logs: Sequence[MotionLog], tried: Sequence[Sequence[NewtonEulerResidual]], at: Array, told: Mask
 ) -> RefinedDelays | None:
     """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not.
 
-    tried: the residuals of each log read at these delays.
+    tried: the residuals of each log read at these delays; told: as of `RefinedDelays`, what may be.
     """
     residuals = [residual for own in tried for residual in own]
     if not residuals:
@@ -140,7 +145,8 @@ def _step(
         suspect = bool((size > SUSPECT * spread)[spread >= WELL_KNOWN].any())
         differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
         # What is known no better than by what is usual moves nothing.
-        share = np.where(spread < APART, APART**2 / (APART**2 + spread**2), 0.0)
+        told = told & (spread < APART)
+        share = np.where(told, APART**2 / (APART**2 + spread**2), 0.0)
         # What no model shows better is in the deviation of all feet's delay already.
         own = np.sqrt(np.append(variance[:-1], spread[-1] ** 2))
         usual, unsure = share * apart, np.where(share > 0, np.sqrt(share) * own, APART)
@@ -151,7 +157,7 @@ def _step(
     # What is left is told beside sensors that were read at moments of their own.
     if np.abs(nearest - at).max() > LEAST_STD:
         values = nearest if left is None else nearest + left[0]
-        return RefinedDelays(values, np.inf, 1.0, *flags, closed, slowest)
+        return RefinedDelays(values, np.inf, 1.0, *flags, closed, slowest, told=told)
     if left is None:
         return None
     by, std, freedom = left
@@ -160,7 +166,7 @@ def _step(
     unsure = np.where(differ, [*np.zeros(len(at) - 1), std], unsure)
     beside = float(unsure[:-1].max()), float(unsure[-1])
     follows = 0.0 if free is None else float(np.mean(free.covariance[:-1, -1]) / free.covariance[-1, -1])
-    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside, follows)
+    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside, follows, told)
 
 
 def _left(

@@ -100,7 +100,7 @@ def estimate_wrench_delay(
     known = [own for own in as_recorded if own is not None]
     found = refined_delays(robot, logs, each, still, known if len(known) == len(logs) else None)
     if found is not None and found.std <= KNOWN_STD and not found.suspect:
-        return replace(_told(robot, found), residuals=found.residuals)
+        return _told(robot, found)
     return_freed()
     grids = list(each(partial(lagged_log, robot), logs))
     shown = [grid for grid in grids if grid is not None]
@@ -114,7 +114,7 @@ def estimate_wrench_delay(
     searched = np.array([grid is not None for grid in grids])
     if _in_doubt(lags, found, searched):
         return _doubtful(robot, lags)
-    return _unseen(robot, logs) if found is None else replace(_told(robot, found), residuals=found.residuals)
+    return _unseen(robot, logs) if found is None else _told(robot, found)
 
 
 def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
@@ -185,7 +185,11 @@ def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
 
 
 def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
-    """Delays that the logs show, with what is said of them."""
+    """Delays that the logs show, with what is said of them and what these logs leave."""
+    return replace(_delays(robot, found), residuals=found.residuals)
+
+
+def _delays(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     feet, encoders = found.values[:-1], float(found.values[-1])
     value, beside = float(np.mean(feet)), found.encoders_unsure
     if found.unsteady is not None:
