@@ -111,7 +111,36 @@ def test_newtons_law_takes_its_turns_from_the_orientation_where_there_is_no_gyro
     inner = slice(10, -10)
     turned, true = (each.angular_velocity("chest")[inner] for each in (found, log))
     assert np.abs(turned - true).max() < 2e-3 * np.abs(true).max()
-    for missing in (("linear_acceleration",), ("angular_velocity", "orientation")):
+    still = without(log, "linear_acceleration")
+    assert with_gyroscope(robot, still) is still, "soles that stand say how it accelerates"
+    for missing in (("linear_acceleration", "orientation"), ("angular_velocity", "orientation")):
         assert with_gyroscope(robot, without(log, *missing)) is None
     left = replace(robot.feet["left"], contact="always")
     assert with_gyroscope(replace(robot, feet={**robot.feet, "left": left}), log) is None, "zeroed under load"
+
+
+@pytest.mark.parametrize("late", [0.004, 0.12])
+def test_standing_soles_tell_delays_where_no_accelerometer_is_recorded(late: float) -> None:
+    """Also one that only a search over lags finds; encoders by themselves move the acceleration as well."""
+    twin = hrp2.robot()
+    sweep = checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+    blind = without(sweep, "linear_acceleration")
+    found = estimate_wrench_delay(twin, [read_in_time(twin, blind, np.array([-late, -late, 0.0]))])
+    assert found.delay == pytest.approx(late, abs=3 * found.std)
+    assert found.std < 0.001
+    by_encoders = estimate_wrench_delay(twin, [read_in_time(twin, blind, np.array([0.0, 0.0, -late]))])
+    assert by_encoders.encoders == pytest.approx(late, abs=0.001)
+    assert by_encoders.delay == pytest.approx(0.0, abs=0.002)
+
+
+def test_a_hand_that_pushes_is_seen_without_an_accelerometer() -> None:
+    """Forces that sway by more than what the robot's motion needs: nothing is told of the sensors there."""
+    twin = hrp2.robot()
+    sweep = checked(twin, play_all(["Myrand5"], twin, PAPER, "ideal", [0])[0][0].log)
+    blind = without(sweep, "linear_acceleration")
+    assert newton_euler_residuals(twin, blind)
+    push = 30 * np.sin(2 * np.pi * 0.4 * sweep.time)
+    names = [f"wrench.{foot.wrench.name}.force.x" for foot in twin.feet.values()]
+    assert not newton_euler_residuals(
+        twin, blind.with_columns({name: blind.column(name) + push for name in names})
+    )

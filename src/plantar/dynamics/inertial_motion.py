@@ -1,4 +1,7 @@
-"""A log's motion from IMU and joint positions alone: nothing else enters, so nothing else can delay it."""
+"""A log's motion from IMU and joint positions alone: nothing else enters, so nothing else can delay it.
+
+Of an IMU without an accelerometer, soles that stand say how it accelerates.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from functools import cached_property
 import numpy as np
 import pinocchio as pin
 
+from plantar.contact.standing_imu import StandingImu
 from plantar.conventions import Array
 from plantar.dynamics.base_motion import root_motion
 from plantar.dynamics.equation import Equation
@@ -54,13 +58,18 @@ class InertialSignals:
 def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> InertialSignals:
     """What `inertial_motion` needs of a log, filtered at `cutoff` [Hz].
 
-    Raises RobotError without an IMU, LogError where its columns are missing.
+    Raises RobotError without an IMU, LogError where a log has no angular velocity, or neither acceleration nor
+    orientation.
     """
     imu = robot.required_imu.name
     positions = low_pass(log.positions(robot), log.period, cutoff)
     rate = low_pass(log.angular_velocity(imu), log.period, cutoff)
-    proper = low_pass(log.linear_acceleration(imu), log.period, cutoff)
-    return InertialSignals(positions, rate, proper, log.period)
+    stood = None if log.has_imu(imu, "linear_acceleration") else StandingImu.of(robot, log)
+    if stood is None:
+        proper = low_pass(log.linear_acceleration(imu), log.period, cutoff)
+        return InertialSignals(positions, rate, proper, log.period)
+    proper, slopes = np.split(low_pass(np.hstack(stood.along_encoders), log.period, cutoff), 2, axis=1)
+    return InertialSignals(positions, rate, proper, log.period, slopes)
 
 
 def inertial_motion(

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from plantar.contact.phases import carried_weight, detect_contact
-from plantar.contact.standing_acceleration import standing_feet
+from plantar.contact.standing_imu import sole_motions, standing_loads
 from plantar.conventions import GRAVITY, NORMAL95, Array, rotation_from_quaternion
 from plantar.estimation.weighted_mean import weighted_mean
 from plantar.logs.motion_log import MotionLog, imu_columns
@@ -188,7 +188,8 @@ def _leans(
 ) -> Iterator[Array]:
     """Of each stance the lean about both axes and what goes with it, (n, 2, 11) [rad, and per unit], at `every` nth
     sample."""
-    period, (feet, forces) = log.period, standing_feet(robot, log, orientation)
+    period, feet = log.period, sole_motions(robot, log.positions(robot), orientation)
+    forces = standing_loads(robot, log, feet)
     contacts = detect_contact(
         {name: low_pass(force, period, DERIVED) for name, force in forces.items()},
         {name: foot.contact == "always" for name, foot in robot.feet.items()},

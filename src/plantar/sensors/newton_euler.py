@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from plantar.contact.phases import shaken
-from plantar.contact.standing_acceleration import standing_acceleration
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import Contact, model_parameters
 from plantar.dynamics.equation import equation_of
@@ -117,32 +116,21 @@ def with_gyroscope(robot: RobotModel, log: MotionLog) -> MotionLog | None:
     if imu is None or any(foot.contact == "always" for foot in robot.feet.values()):
         return None
     gyroscope = imu_columns(imu.name, "angular_velocity")
-    turns = log.has(*gyroscope) or log.orientation(imu.name) is not None
-    if not turns or not log.has_imu(imu.name, "linear_acceleration"):
+    turns, accelerates = log.has(*gyroscope), log.has_imu(imu.name, "linear_acceleration")
+    if not (turns and accelerates) and log.orientation(imu.name) is None:
         return None
-    if log.has(*gyroscope):
+    if turns:
         return log
     return log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
-
-
-def with_acceleration(robot: RobotModel, log: MotionLog, proper: Array) -> MotionLog:
-    """The log with a proper acceleration (N, 3) [m/s²] of its IMU."""
-    names = imu_columns(robot.required_imu.name, "linear_acceleration")
-    return log.with_columns(dict(zip(names, proper.T, strict=True)))
 
 
 def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEulerResidual]:
     """Both sides along an evenly sampled log, in each run without a gap; none where it lacks what that takes, or in
     none the law closes."""
-    stood = None
-    if robot.imu is not None and not log.has_imu(robot.imu.name, "linear_acceleration"):
-        stood = standing_acceleration(robot, log)
-    complete = with_gyroscope(robot, log if stood is None else with_acceleration(robot, log, stood.proper))
+    complete = with_gyroscope(robot, log)
     if complete is None:
         return []
     signals = inertial_signals(robot, complete, CUTOFF)
-    if stood is not None:
-        signals = replace(signals, by_encoders=low_pass(stood.by_encoders, log.period, CUTOFF))
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     runs_of_log = _known_runs(robot, signals, wrenches)
     # Of a long recording each run may have a delay of its own, hours after the last one.

@@ -12,9 +12,11 @@ from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors.delays.refined_delays import read_in_time
 from plantar.sensors.newton_euler import with_gyroscope
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import low_pass
+from plantar.signals.resampling import with_continuous_quaternions
 from plantar.signals.segments import longest_run
 from plantar.signals.thinning import slow_columns
 
@@ -50,7 +52,8 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     predicted, measured = np.empty((len(lags), *late.shape[2:])), np.empty((len(lags), *late.shape))
     # One motion after the other: all of them at once would be the largest array of any log.
     for place, by in enumerate(lags):
-        motion = inertial_motion(robot, equation, signals, inner, encoders_late=by)
+        later = read_in_time(robot, thin, np.append(np.zeros(len(robot.feet)), by))
+        motion = inertial_motion(robot, equation, inertial_signals(robot, later, CUTOFF), inner)
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
         measured[place] = _moving(carried, thin.period)
@@ -74,9 +77,11 @@ def _liveliest(force: Array, inner: slice, most: int) -> slice:
 def _thinned(log: MotionLog) -> MotionLog:
     """The columns of IMU, joints' positions and wrenches, slow parts only and few samples of them."""
     wanted = ("imu.", "wrench.", "joint.")
-    names = [name for name in log.columns if name.startswith(wanted) and ".orientation." not in name]
+    read = {
+        name: values for name, values in with_continuous_quaternions(log).items() if name.startswith(wanted)
+    }
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    slow = slow_columns({name: log.column(name) for name in names}, log.period, CUTOFF, stride)
+    slow = slow_columns(read, log.period, CUTOFF, stride)
     return MotionLog(log.name, log.time[::stride], slow, log.path)
 
 

@@ -121,7 +121,10 @@ def residuals_at(robot: RobotModel, delays: Array, log: MotionLog) -> list[Newto
 
 
 def _step(
-    logs: Sequence[MotionLog], tried: Sequence[Sequence[NewtonEulerResidual]], at: Array, told: Mask
+    logs: Sequence[MotionLog],
+    tried: Sequence[Sequence[NewtonEulerResidual]],
+    at: Array,
+    told: Mask | bool = True,
 ) -> RefinedDelays | None:
     """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not.
 
