@@ -11,8 +11,9 @@ from plantar.errors import DataError
 from plantar.faults.channels import check_channels
 from plantar.faults.log_faults import check_log
 from plantar.feet.identify import identify_feet
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.robot.model import RobotModel
+from plantar.signals.segments import longest_run
 
 JOINT = "right_ankle_pitch"
 
@@ -211,3 +212,18 @@ def test_zeros_that_a_driver_puts_in_are_no_repeated_frames(robot: RobotModel) -
     }
     codes = {finding.code for finding in check_channels(robot, log.with_columns(empty))}
     assert "lost_frames" not in codes
+
+
+@pytest.mark.parametrize(("length", "told"), [(0, False), (6, True)])
+def test_steps_of_a_converter_are_no_lost_frames(robot: RobotModel, length: int, told: bool) -> None:
+    """Without noise all channels stand for some samples, and then one of them moves by a step."""
+    log = record(sway(duration=12.0, shift=0.3))
+    if length:
+        log = losing(log, "left", length, 60)
+    names = wrench_columns("left")
+    steps = dict(zip(names, 3 * [0.25] + 3 * [0.025], strict=True))
+    read = log.with_columns({name: step * np.round(log.column(name) / step) for name, step in steps.items()})
+    standing = (np.diff(read.stack(names), axis=0) == 0).all(axis=1)
+    assert longest_run(standing).stop - longest_run(standing).start >= 3
+    found = [one for one in check_channels(robot, read) if one.code == "lost_frames"]
+    assert bool(found) == told

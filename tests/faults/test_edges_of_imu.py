@@ -47,12 +47,17 @@ def test_a_quaternion_s_norm_is_one_within_a_tenth(norm: float, said: bool) -> N
     ("norm", "found"),
     [(0.79, [(UNIT, False)]), (0.81, [(UNIT, True)]), (1.19, [(UNIT, True)]), (1.21, [(UNIT, False)]),
      (0.59 * G, [(UNIT, False)]), (0.61 * G, []), (1.59 * G, []), (1.61 * G, [(UNIT, False)]),
-     (0.0, [("dead_channel", True)]), (np.nan, [("dead_channel", True)])],
+     (1.99, [(UNIT, False)]), (2.01, [(UNIT, False)]),
+     (0.0, [("dead_channel", False)]), (np.nan, [("dead_channel", False)])],
 )  # fmt: skip
-def test_an_accelerometer_s_norm_is_gravity_s(norm: float, found: list[object]) -> None:
-    findings = imu(acceleration=np.array([0.0, 0.0, norm]))
+def test_an_accelerometer_s_norm_is_gravity_s(norm: float, found: list[tuple[str, bool]]) -> None:
+    """Beside an orientation it is not needed; without one nothing else shows which way is up."""
+    acceleration = np.array([0.0, 0.0, norm])
+    findings = imu(orientation=LEVEL, acceleration=acceleration)
     assert told(findings) == found
+    assert told(imu(acceleration=acceleration)) == [(code, True) for code, _ in found]
     assert not norm > 0 or all(f"{norm:.3g}" in one.text for one in findings)
+    assert all(("without gravity" in one.text) == (norm < 2.0) for one in findings if one.code == UNIT)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
-from plantar.faults.imu import check_imu
+from plantar.faults.imu import check_imu, without_odd_accelerometer
 from plantar.logs.motion_log import MotionLog
 
 GYROSCOPE, ACCELEROMETER, ORIENTATION = (
@@ -169,3 +169,11 @@ def test_an_accelerometer_in_another_unit_is_told_beyond_its_limits(
 ) -> None:
     found = [one.code for one in check_imu("chest", scaled(ACCELEROMETER, share)(log))]
     assert ("accelerometer_unit" in found) == told
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 3.0])
+def test_an_accelerometer_that_is_told_is_not_used(log: MotionLog, share: float) -> None:
+    """Beside zeros, or an acceleration without gravity, no wrench would follow Newton's law."""
+    assert without_odd_accelerometer("chest", log) is log
+    left = without_odd_accelerometer("chest", scaled(ACCELEROMETER, share)(log))
+    assert set(log.columns) - set(left.columns) == set(ACCELEROMETER)

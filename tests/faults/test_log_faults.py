@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -272,3 +273,19 @@ def test_a_load_that_cannot_be_known_is_told_once(robot: RobotModel, log: Motion
     found = check_log(robot, constant("wrench.left.force.x", np.nan)(log))
     assert [(finding.code, finding.fatal) for finding in found] == [("dead_channel", False)]
     assert "wrench.left.force" in found[0].text
+
+
+@pytest.mark.parametrize(
+    ("contact", "carried", "told"),
+    [("auto", 0.5, True), ("auto", 0.25, True), ("always", 0.5, False), ("auto", 1.0, False)],
+)
+def test_a_foot_that_the_robot_file_leaves_out_is_missed(
+    robot: RobotModel, log: MotionLog, contact: Literal["auto", "always"], carried: float, told: bool
+) -> None:
+    """Two feet carry the robot, or as the last case has it the one that is named does."""
+    alone = replace(robot, feet={"left": replace(robot.feet["left"], contact=contact)})
+    column = "wrench.left.force.z"
+    share = carried * WEIGHT / float(log.column(column).mean())
+    findings = check_log(alone, log.with_columns({column: share * log.column(column)}))
+    assert [one.code for one in findings if one.fatal] == ["foot_missing"] * told
+    assert not told or "another foot stands, too" in findings[0].text

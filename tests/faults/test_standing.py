@@ -103,18 +103,39 @@ def test_torques_in_newton_millimetres_are_refused(sway: MotionLog, tilt: Motion
         assert (finding.code, finding.fatal) == ("torque_unit", True)
 
 
+def with_feet_exchanged(log: MotionLog) -> MotionLog:
+    sides = {"right_foot": "left_foot", "left_foot": "right_foot"}
+    return log.with_columns(
+        {
+            name: log.column(name.replace(side, sides[side]))
+            for name in log.columns
+            for side in sides
+            if name.startswith(f"wrench.{side}.")
+        }
+    )
+
+
 def test_wrenches_of_exchanged_feet_are_refused(sway: MotionLog) -> None:
     """Told where one foot carries more; two that carry the same are alike either way."""
-    sides = {"right_foot": "left_foot", "left_foot": "right_foot"}
-    swapped = {
-        name: sway.column(name.replace(side, sides[side]))
-        for name in sway.columns
-        for side in sides
-        if name.startswith(f"wrench.{side}.")
-    }
     assert list(check_balance(hrp2.robot(), sway)) == []
-    (finding,) = check_balance(hrp2.robot(), sway.with_columns(swapped))
+    (finding,) = check_balance(hrp2.robot(), with_feet_exchanged(sway))
     assert (finding.code, finding.fatal) == ("swapped_feet", True)
+
+
+@pytest.mark.parametrize(("scale", "code"), [(1.0, "swapped_feet"), (1000.0, "torque_unit")])
+def test_moments_of_exchanged_feet_are_no_unit(scale: float, code: str) -> None:
+    """Of a weight that goes from foot to foot the torques are a small part."""
+    log = walked()
+    assert list(check_balance(hrp2.robot(), log)) == []
+    torques = {name: scale * log.column(name) for name in log.columns if ".torque." in name}
+    (finding,) = check_balance(hrp2.robot(), with_feet_exchanged(log.with_columns(torques)))
+    assert (finding.code, finding.fatal) == (code, True)
+
+
+def test_all_torques_reversed_are_told(sway: MotionLog) -> None:
+    torques = [name for name in sway.columns if ".torque." in name]
+    findings = check_balance(hrp2.robot(), reversed_(sway, *torques))
+    assert any("columns 'wrench.*.torque.*'" in one.text for one in findings if one.code == "sign")
 
 
 @pytest.mark.parametrize(("left", "told"), [(0.01, True), (0.08, False)])

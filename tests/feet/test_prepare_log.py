@@ -9,8 +9,10 @@ import pytest
 
 from biped import drawn_up, record, sway
 from plantar.contact.reasons import Reason
+from plantar.errors import RobotError
 from plantar.feet.prepare_log import checked, prepare
-from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
+from plantar.online.estimator_model import estimator_model
 from plantar.robot.model import RobotModel
 from plantar.sensors.newton_euler import with_gyroscope
 
@@ -45,6 +47,25 @@ def test_what_a_sensor_reads_in_the_air_is_taken_off_and_told(robot: RobotModel)
         assert (*row.force_zero, *row.torque_zero) == pytest.approx(ZERO)
     (note,) = [note for note in found.notes if note.code == "air_zero" and "left foot" in note.text]
     assert note.text.startswith("steps: left foot: in the air its force sensor reads 4, -3, 20 N (4 swings")
+
+
+@pytest.mark.parametrize(("count", "told"), [(0, "names no feet"), (4, "names 4 feet")])
+def test_feet_that_are_no_biped_s_are_refused(robot: RobotModel, count: int, told: str) -> None:
+    feet = {str(place): robot.feet["left"] for place in range(count)}
+    other = replace(robot, feet=feet)
+    with pytest.raises(RobotError, match=told):
+        checked(other, record(sway(duration=2.0)))
+    with pytest.raises(RobotError, match=told):
+        estimator_model(other, cutoff=5.0, wrench_delay=(0.0, 0.0), elements={}, compliance={})
+
+
+def test_an_accelerometer_that_drivers_fill_with_zeros_is_no_accelerometer(robot: RobotModel) -> None:
+    log = record(sway(duration=4.0))
+    names = imu_columns("chest", "linear_acceleration")
+    zeros = checked(robot, log.with_columns({name: np.zeros(len(log)) for name in names}))
+    assert log.has(*names)
+    assert not zeros.has(*names)
+    assert [note.severity for note in zeros.notes if "hold no value; not used" in note.text] == ["warning"]
 
 
 def test_a_foot_that_sways_is_not_in_the_air(robot: RobotModel) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from biped import record, sway
 from plantar.errors import DataError
 from plantar.notes import Note
 from plantar.online.replay import IDENTIFY
-from plantar.online.verdicts import judged, log_notes
+from plantar.online.verdicts import AGAIN, judged, log_notes
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 
@@ -24,6 +26,12 @@ def test_a_batch_result_leaves_the_verdicts_and_none_makes_them_weak() -> None:
     first, second = judged(ROWS, [], identified=False)
     assert (first.verdict, first.advice) == ("weak", IDENTIFY)
     assert second == ROWS[1]
+
+
+def test_who_gave_a_result_is_not_sent_for_one() -> None:
+    small = replace(ROWS[0], verdict="weak", reason="motions too small", advice=IDENTIFY)
+    assert judged([small], [], identified=False) == [small]
+    assert judged([small], [], identified=True) == [replace(small, advice=AGAIN)]
 
 
 @pytest.mark.parametrize(("code", "severity", "verdict"), [

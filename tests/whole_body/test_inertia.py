@@ -16,7 +16,7 @@ from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
 from plantar.dynamics.equation import Equation
 from plantar.errors import DataError, RobotError
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
@@ -188,6 +188,15 @@ def test_a_reversed_torque_channel_and_a_tilted_mount_are_found_and_said(
     codes = {note.code for note in identify_inertia(robot, [logs[0].with_columns(tilted)]).notes}
     assert "imu_tilt" in codes
     assert "wrench_polarity" not in codes
+
+
+def test_an_accelerometer_without_gravity_is_left_for_the_soles(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    names = imu_columns("trunk", "linear_acceleration")
+    column = logs[0].column(names[2])
+    found = identify_inertia(robot, [logs[0].with_columns({names[2]: column - column.mean()})])
+    assert "base_from_sole" in {note.code for note in found.notes}
 
 
 def test_crosstalk_of_a_force_channel_is_found_mended_and_said(

@@ -47,10 +47,8 @@ def run(
     rows = [choice for choice in (found.compared, found.together) if choice is not None]
     screen.print(_table("\nFor comparison", rows))
     smallest = next((c for c in found.best if c.usual < 1.2 * found.best[-1].usual), found.best[-1])
-    screen.print(
-        f"\n{len(smallest.motions)} logs give nearly all the information: {', '.join(smallest.motions)}.",
-        markup=False,
-    )
+    few = "1 log gives" if len(smallest.motions) == 1 else f"{len(smallest.motions)} logs give"
+    screen.print(f"\n{few} nearly all the information: {', '.join(smallest.motions)}.", markup=False)
 
 
 def _table(title: str, choices: Any) -> object:

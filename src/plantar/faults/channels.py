@@ -12,7 +12,7 @@ from plantar.errors import clock
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
-from plantar.signals.held import FEWEST, SHORTEST, can_be_held, coarse, held_in
+from plantar.signals.held import FEWEST, ONE_STEP, SHORTEST, can_be_held, coarse, held_in
 from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import longest_run, runs
 
@@ -210,6 +210,7 @@ def _lost_frames(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
     still &= np.any([log.column(column)[1:] != 0 for column in columns], axis=0)
     again = np.mean(still[1:][~still[:-1]]) if not still[:-1].all() else 1.0
     bursts = [run for run in runs(still) if (run.stop - run.start) * log.period < SHORTEST]
+    bursts = _ending_in_jumps([log.column(column) for column in columns], bursts)
     lost = sum(run.stop - run.start for run in bursts)
     longest = max((run.stop - run.start for run in bursts), default=0)
     if again < 0.5 and longest >= BURST and lost > LOST * len(log):
@@ -222,3 +223,16 @@ def _lost_frames(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
             f"frames? {spoilt}(valid: leave such cells empty)"
         )
         yield Finding(LOST_FRAMES, text, severity="warning" if spoilt else "info")
+
+
+def _ending_in_jumps(columns: Sequence[Array], bursts: Sequence[slice]) -> list[slice]:
+    """Those of the `bursts` without a change behind which a column (n,) changes by more than a step of its scale: where
+    none does, a converter's steps are larger than what little moved meanwhile."""
+    ends = np.array([run.stop for run in bursts if run.stop < len(columns[0]) - 1], dtype=int)
+    jumps = np.zeros(len(ends), dtype=bool)
+    for column in columns:
+        changes = np.abs(np.diff(column))
+        moving = changes[changes > 0]  # nor NaN
+        if moving.size:
+            jumps |= changes[ends] > ONE_STEP * moving.min()
+    return [run for run, jump in zip(bursts, jumps, strict=False) if jump]

@@ -15,6 +15,7 @@ from plantar.signals.held import coarse
 from plantar.signals.segments import complete
 
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
+FREE = 2.0  # m/s²: a robot that stands or walks accelerates by less, usually
 RIGHT_ANGLE = np.radians(8)  # likewise: less is a mount or an estimator
 
 
@@ -62,18 +63,27 @@ def _moves(orientation: Array | None) -> bool:
     return len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
 
 
+def without_odd_accelerometer(name: str, log: MotionLog) -> MotionLog:
+    """The log without an accelerometer whose size is told by `check_imu`: Newton's law would refute all else by it."""
+    columns = imu_columns(name, "linear_acceleration")
+    odd = log.has(*columns) and _accelerometer_size(name, log) is not None
+    return log.without(columns) if odd else log
+
+
 def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
-    """Whether the accelerometer's usual norm is gravity's, and its reading no constant beside an IMU that turns."""
+    """Whether the accelerometer's usual norm is gravity's, and its reading no constant beside an IMU that turns.
+
+    Fatal where nothing else shows gravity, or where it is a unit that the user can name.
+    """
     acceleration = log.linear_acceleration(name)
     norm = np.linalg.norm(acceleration, axis=1)
     where = f"columns 'imu.{name}.linear_acceleration.*'"
-    valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
+    valid, alone = f"valid: m/s², about {GRAVITY:.2f} at rest", log.orientation(name) is None
     known = acceleration[np.isfinite(norm)]
     if known.any() and _moves(log.orientation(name)) and not np.ptp(known, axis=0).any():
-        text = f"{where}: never change; is the sensor dead? (valid: leave the columns out)"
-        return Finding("dead_channel", text)
+        return Finding("dead_channel", f"{where}: never change; is the sensor dead? Not used ({valid})")
     if not np.isfinite(norm).any() or np.nanmax(norm) == 0:
-        return Finding("dead_channel", f"{where}: hold no value ({valid})", log.orientation(name) is None)
+        return Finding("dead_channel", f"{where}: hold no value; not used ({valid})", alone)
     size = float(np.nanmedian(norm))
     if 0.8 < size < 1.2:
         return Finding(
@@ -82,7 +92,9 @@ def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
             True,
         )
     if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
-        return Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")
+        like = ", as of an acceleration without gravity" if size < FREE else ""
+        text = f"{where}: its usual norm is {size:.3g}{like}; not used ({valid})"
+        return Finding("accelerometer_unit", text, alone)
     return None
 
 

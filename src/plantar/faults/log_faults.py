@@ -31,6 +31,10 @@ from plantar.signals.thinning import picked
 DEGREES = 180 / np.pi
 FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
 QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
+LEAST_PART, MOST_PART = (
+    0.2,
+    0.85,
+)  # of the weight: a foot that carries so much on average does not stand alone
 SHORTEST = 0.5  # s of a log from which anything can be said
 
 
@@ -166,8 +170,16 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if 0.07 < carried / weight < 0.14:
             text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
             yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)
+        elif len(loads) == 1 and LEAST_PART < float(together.mean()) / weight < MOST_PART:
+            yield _foot_missing(next(iter(loads)), float(together.mean()) / GRAVITY, robot.mass)
         else:
             yield from check_balance(robot, log)
+
+
+def _foot_missing(foot: str, carried: float, mass: float) -> Finding:
+    text = f"feet: the robot file names '{foot}' alone, which carries {carried:.3g} of {mass:.3g} kg: another"
+    valid = "both feet; 'contact: always' for one that stands throughout beside one without a force sensor"
+    return Finding("foot_missing", f"{text} foot stands, too (valid: {valid})", True)
 
 
 def _of_its_kind(column: str, columns: Sequence[str]) -> list[str]:

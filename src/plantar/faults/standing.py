@@ -52,10 +52,12 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if stance is None:
         return
     sides = stance.sides()
+    as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
     if found := list(torque_unit(robot, log, sides.moment_arms)):
-        yield from found
+        # Moments of exchanged forces are so large that right torques look too small.
+        unit = list(torque_unit(robot, log, other.moment_arms)) or other.misfit > BETTER * as_is
+        yield from found if unit else [_swapped()]
         return
-    as_is = sides.misfit
     if as_is <= NOTABLE and sides.lean <= LEANING:
         yield from _turned(stance, sides)
         return
@@ -67,7 +69,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         valid = "valid: torques in N·m; these look like N·mm" if millimetres else "valid: below 0.02 m"
         yield Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
         return
-    exchanged = stance.exchanged_wrenches().sides().misfit
+    exchanged = other.misfit
     certain = as_is > CERTAIN_MOMENT_ARM
     joints = _reversed_joints(stance, sides) if certain or sides.lean > LEANING else {}
     left = {**joints, **_reversed_components(stance, sides)}
@@ -77,9 +79,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
         yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
     elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
-        text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
-        text += f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else ""
-        yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
+        yield _swapped(f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else "")
     elif turned is not None and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is):
         text = f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
         text += f" gravity to {100 * turned.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
@@ -103,6 +103,11 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield Finding("balance", f"{text} (valid: below {100 * NOTABLE:.0f} cm; {where})")
     else:
         yield from _turned(stance, sides)
+
+
+def _swapped(or_else: str = "") -> Finding:
+    text = f"the feet's wrenches look swapped: exchanged, they balance gravity far better{or_else}"
+    return Finding("swapped_feet", f"{text} (check the sensors' names)", True)
 
 
 def _alike(left: Mapping[str, float], as_is: float) -> str:
@@ -201,4 +206,8 @@ def _reversed_components(stance: Stance, sides: StanceSides) -> dict[str, float]
         for name, trial in trials.items():
             if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
                 left[name] = usual(trial)
+    # As by software that gives what the robot does to the ground.
+    trial = total - 2 * moment_arms[:, :, 3:].sum(axis=(1, 2))
+    if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
+        left["columns 'wrench.*.torque.*'"] = usual(trial)
     return left

@@ -16,7 +16,12 @@ from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
 from plantar.feet.first_look import FirstLook, look_again, looked_at, over_logs
 from plantar.feet.fit.vertical_stiffness import Heights, VerticalStiffness, fit_vertical_stiffness, heights_of
-from plantar.feet.interval_width.force_gain import GainError, force_gain_errors, force_gain_notes
+from plantar.feet.interval_width.force_gain import (
+    GainError,
+    force_gain_errors,
+    force_gain_notes,
+    gain_reaches,
+)
 from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare_log import prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, has_steps, moved_centre
@@ -119,9 +124,9 @@ def prepare_checked(
     recordings, settings = found.recordings, found.settings
     return_freed(size)
     progress("fit z")
-    vertical = fit_vertical_stiffness(found.heights, robot)
-    moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
+    vertical = fit_vertical_stiffness(found.heights, robot, gain_reaches(robot, forces))
+    moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     return_freed(size)
     moments = moments_of(robot, found.moments, any(map(has_steps, recordings)))
     filtered = slow_filter(fading(delay.residuals))

@@ -15,6 +15,7 @@ from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.errors import RobotError
 from plantar.faults.gyroscope import BY_LEANS, beside_leans
+from plantar.faults.imu import without_odd_accelerometer
 from plantar.faults.log_faults import check_log, finding_notes, refuse_impossible
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
@@ -22,7 +23,7 @@ from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.stretches import most_moving
 from plantar.notes import Finding, Note
-from plantar.robot.model import Imu, RobotModel
+from plantar.robot.model import Imu, RobotModel, check_feet
 from plantar.sensors.air_zero import AirZero, air_zero
 from plantar.sensors.attitude_scale import AttitudeScale, log_attitude_scale
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
@@ -55,20 +56,22 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `faults`).
     """
-    _require(robot)
+    imu = _require(robot)
     log = most_moving(log, {foot.wrench.name for foot in robot.feet.values()})
+    even: MotionLog | None = None
     # Its samples are put right while it is checked; where time is wrong, an even grid could take any memory.
     if len(log) > LONG and findings is None and is_even(log):
         with ThreadPoolExecutor(1) as pool:
             pending = pool.submit(_even, log)
             findings = check_log(robot, log)
-            even: MotionLog | None = pending.result()
+            even = pending.result()
     else:
-        findings, even = check_log(robot, log) if findings is None else findings, None
+        findings = check_log(robot, log) if findings is None else findings
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
     return_freed(log.size)
-    return (even or _even(log)).with_columns({}, *log.joint_notes(robot), *odd)
+    even = without_odd_accelerometer(imu.name, even or _even(log))
+    return even.with_columns({}, *log.joint_notes(robot), *odd)
 
 
 def _even(log: MotionLog) -> MotionLog:
@@ -162,8 +165,7 @@ def _lifted(robot: RobotModel, raw: Mapping[str, BushState], foot: str) -> Mask:
 
 
 def _require(robot: RobotModel) -> Imu:
-    if not robot.feet:
-        raise RobotError("names no feet", path=robot.path, valid="feet: {left: ..., right: ...}")
+    check_feet(robot)
     if robot.imu is None:
         message = "names no imu: bush angles need the direction of gravity"
         raise RobotError(message, path=robot.path, valid="imu: {name: ..., link: ...}")

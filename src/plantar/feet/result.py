@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import OFFSET_UNIT
+from plantar.feet.assess.data_faults import doubted, standing_faults
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
@@ -39,6 +40,9 @@ def feet_result(
     limits = [row for each in found for row in each.diagnosis]
     feasible = remedies(ready.settings, ready.sensor_delay, robot, ready.fitted)
     parameters, limits = with_remedies([row for each in found for row in each.parameters], limits, feasible)
+    vertical = doubted(
+        hardly_standing(ready.vertical.parameters, ready.fitted), standing_faults(ready.fitted)
+    )
     rows = [row for each in found for row in each.validation]
     predictions = {key: value for each in found for key, value in each.predictions.items()}
     return FeetResult(
@@ -46,7 +50,7 @@ def feet_result(
         inputs=tuple(Input.of(recording.log, recording.role) for recording in ready.recordings),
         settings=ready.settings.to_dict(),
         model=_model(fits),
-        parameters=(*parameters, *hardly_standing(ready.vertical.parameters, ready.fitted)),
+        parameters=(*parameters, *vertical),
         offsets=tuple(offset for fit in fits for offset in _offsets(fit)),
         phases=tuple(
             phase

@@ -217,8 +217,13 @@ class MotionLog:
         if not empty:
             return self
         text = f"{self.name}: never hold a value, taken as not recorded: {listing(empty, HARMLESS)}"
-        columns = {name: values for name, values in self.columns.items() if name not in set(empty)}
-        return replace(self, columns=columns, notes=(*self.notes, Note("joint_empty", "info", text)))
+        return self.without(empty, Note("joint_empty", "info", text))
+
+    def without(self, names: Iterable[str], *notes: Note) -> MotionLog:
+        """The same recording without these columns, and with notes added."""
+        left_out = set(names)
+        columns = {name: values for name, values in self.columns.items() if name not in left_out}
+        return replace(self, columns=columns, notes=self.notes + notes)
 
     def select(self, rows: slice | Mask) -> MotionLog:
         """The same recording with only some of its rows."""

@@ -15,7 +15,7 @@ from plantar.contact.deflection import FootPath, path_to
 from plantar.contact.polygon import convex_hull
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Axis
 from plantar.errors import RobotError
-from plantar.robot.model import RobotModel
+from plantar.robot.model import RobotModel, check_feet
 
 SCHEMA = "plantar.foot_estimator/1"
 SLIDE = 0.003  # m, by which a loaded bush is compressed, where nobody has measured it
@@ -50,9 +50,9 @@ def estimator_model(
 
     Raises RobotError where the robot file names no IMU or no feet.
     """
-    if robot.imu is None or not robot.feet:
-        message = "the estimator needs an IMU and feet"
-        raise RobotError(message, path=robot.path, valid="imu: {...} and feet: {left: ..., right: ...}")
+    check_feet(robot)
+    if robot.imu is None:
+        raise RobotError("the estimator needs an IMU", path=robot.path, valid="imu: {name: ..., link: ...}")
     known = robot.uncertainty
     lines = [
         SCHEMA,

@@ -18,6 +18,10 @@ UNTOLD = (
     "in large motions"
 )
 
+AGAIN = (
+    "run `plantar identify feet` again, on this log and on larger motions of this robot, and give that result"
+)
+
 
 def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
     """The faults of a log, as notes. Raises DataError where a sensor reads something impossible."""
@@ -31,7 +35,7 @@ def judged(rows: Sequence[Parameter], notes: Sequence[Note], *, identified: bool
     faults = [note for note in notes if note.severity == "warning" and note.code in UNMENDED]
     found = doubted(rows, faults)
     if identified:
-        return found
+        return [replace(row, advice=AGAIN) if row.advice == IDENTIFY else row for row in found]
     return [
         replace(row, verdict="weak", reason=UNTOLD, advice=IDENTIFY) if row.verdict == "usable" else row
         for row in found

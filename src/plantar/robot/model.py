@@ -24,6 +24,8 @@ from plantar.robot.uncertainty import Uncertainty
 from plantar.robot.urdf import following_joints, parse_urdf, read_urdf, unknown_link
 from plantar.robot.weighed import check_weight, of_mass, weight_notes, weight_of
 
+MOST_FEET = 2  # the weight and the closed chain tell two force sensors apart, no more
+
 
 @dataclass(frozen=True)
 class Placement:
@@ -247,6 +249,14 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     )
     _check(robot)
     return robot
+
+
+def check_feet(robot: RobotModel) -> None:
+    """Raise RobotError unless the robot file names the feet of a biped, or one of them."""
+    if not robot.feet:
+        raise RobotError("names no feet", path=robot.path, valid="feet: {left: ..., right: ...}")
+    if len(robot.feet) > MOST_FEET:
+        raise RobotError(f"names {len(robot.feet)} feet", path=robot.path, valid="two: the feet of a biped")
 
 
 def _urdf_path(path: Path, urdf: str) -> Path:

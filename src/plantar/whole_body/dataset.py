@@ -13,6 +13,7 @@ from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, 
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
 from plantar.errors import DataError, RobotError
+from plantar.faults.imu import without_odd_accelerometer
 from plantar.faults.log_faults import check_log, refuse_impossible
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -71,7 +72,7 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     """
     robot, tree = body.robot, body.equation.tree
     refuse_impossible(log, check_log(robot, log))
-    even = evenly_sampled(log)
+    even = evenly_sampled(log if robot.imu is None else without_odd_accelerometer(robot.imu.name, log))
     notes = [*even.notes, *log.joint_notes(robot)]
     names = tree.names
     moving = [name for name in names if even.has(f"joint.{name}.position")]

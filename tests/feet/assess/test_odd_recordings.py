@@ -55,6 +55,14 @@ def test_of_two_that_differ_nobody_knows_which_is_right() -> None:
     assert all(name in text for name in ("sway_0", "sway_1", "nobody knows which is right"))
 
 
+def test_a_recording_with_another_sign_is_no_other_floor() -> None:
+    reversed_ = Rubber(stiffness=-420.0, damping=-18.0)
+    (text,) = said(swaying((PLAIN, 1.0), (reversed_, 1.0), (PLAIN, 1.0)))
+    assert text.startswith(f"sway_1: {FOOT} pitch: stiffness is nowhere near that of 2 other recordings. Has")
+    assert "another sign" in text
+    assert "floor" not in text
+
+
 def test_recordings_that_agree_are_none() -> None:
     assert said(swaying((PLAIN, 1.0), (PLAIN, 1.0), (PLAIN, 1.0))) == []
     assert said(swaying((SOFTER, 1.0))) == []

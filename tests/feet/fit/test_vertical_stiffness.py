@@ -33,7 +33,7 @@ def test_no_moving_weight_shows_no_vertical_stiffness(robot: RobotModel) -> None
 
 def test_where_no_log_shows_it_rubber_may_be_as_soft_as_rubber_is(robot: RobotModel) -> None:
     """What is known of rubber is known however few the logs are."""
-    found = fit_vertical_stiffness([], robot)
+    found = fit_vertical_stiffness([], robot, {})
     assert found.compliance == dict.fromkeys(robot.feet, 0.0)
     assert found.compliance_std == dict.fromkeys(robot.feet, 1e-5)  # m/N
     assert found.freedom == np.inf
@@ -58,7 +58,7 @@ def test_a_stiffness_is_judged_by_its_width_and_by_whether_feet_are_told_apart(
 ) -> None:
     found = compliances(0.01, 0.1 if told_apart else 100.0)
     assert found.separable == told_apart
-    row = _row("left", 4e-6, half * 4e-6 / 1.96, found)
+    row = _row("left", 4e-6, half * 4e-6 / 1.96, found, 0.0)
     assert row.verdict == verdict
     assert row.value == pytest.approx(250e3)
     assert row.std == pytest.approx(250e3 * half / 1.96), "the same share of the stiffness"
@@ -91,3 +91,30 @@ def test_a_total_load_that_never_changes_leaves_the_difference_to_the_likeness_o
     assert not found.separable
     _, std = found.of(1.0)
     assert std == pytest.approx(0.5 * np.hypot(np.sqrt(found.covariance[0, 0]), 0.1 * found.total), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("gain", "verdict"), [(0.02, "usable"), (0.14, "weak"), (0.6, "unidentifiable"), (1.2, "unidentifiable")]
+)
+def test_what_a_force_sensor_may_be_off_by_the_stiffness_may_be_off_by(gain: float, verdict: str) -> None:
+    row, half = (
+        _row("left", 4e-6, 0.1 * 4e-6 / 1.96, compliances(0.01, 0.1), gain),
+        float(np.hypot(0.1, gain)),
+    )
+    assert row.verdict == verdict
+    assert row.std == pytest.approx(250e3 * half / 1.96, rel=1e-3)
+    high = 250e3 / (1 - half) if half < 1 else np.inf
+    assert row.interval95 == pytest.approx((250e3 / (1 + half), high), rel=1e-3)
+
+
+def test_no_vertical_stiffness_is_usable_of_sensors_that_miss_a_third_of_the_weight(
+    robot: RobotModel,
+) -> None:
+    """Somebody carries the robot, or the sensors read too little: nobody can tell."""
+    log = record(sway(shift=0.3))
+    light = log.with_columns({name: 0.7 * log.column(name) for name in log.columns if "wrench." in name})
+    rows = [row for row in identify_feet(robot, [light], settings=LINEAR).parameters if row.axis == "z"]
+    assert len(rows) == 2
+    for row in rows:
+        assert row.value is None or row.interval95[0] < VERTICAL < row.interval95[1]
+        assert row.verdict != "usable"

@@ -33,20 +33,32 @@ ADVICE = "mend what the warning names, or leave this log out"
 
 
 def data_faults(recordings: Sequence[Recording], fit: AxisFit) -> list[Note]:
-    """The warnings on logs in which this foot has used samples, and on its fit.
+    """The warnings on logs in which this foot has used samples, and on its fit."""
+    used = [recording for recording in recordings if recording.used(fit.foot).any()]
+    stands = [recording for recording in used if recording.stances[fit.foot] is None]
+    own = [note for note in fit.notes if note.severity == "warning" and note.code in UNMENDED]
+    return [*_faults_of(used, stands), *own]
+
+
+def standing_faults(recordings: Sequence[Recording]) -> list[Note]:
+    """The warnings on logs in which no foot steps: those that the vertical stiffness rests on."""
+    stand = [one for one in recordings if all(stances is None for stances in one.stances.values())]
+    return _faults_of(stand, stand)
+
+
+def _faults_of(used: Sequence[Recording], stands: Sequence[Recording]) -> list[Note]:
+    """The warnings on `used` logs, those of which the foot `stands` in among them.
 
     Where the ground's force leans a little in some logs and not in others, somebody holds or pushes the robot in those:
     a turned IMU or a wrong mass would show in all of them.
     """
-    used = [recording for recording in recordings if recording.used(fit.foot).any()]
-    stands = [recording for recording in used if recording.stances[fit.foot] is None]
     upright = any(
         all(note.code not in (LEANS_LITTLE, LEANS) for note in recording.notes) for recording in stands
     )
     seen = [
         note for recording in used for note in recording.notes if not (upright and note.code == LEANS_LITTLE)
     ]
-    return [note for note in (*seen, *fit.notes) if note.severity == "warning" and note.code in UNMENDED]
+    return [note for note in seen if note.severity == "warning" and note.code in UNMENDED]
 
 
 def first_sentence(note: Note) -> str:

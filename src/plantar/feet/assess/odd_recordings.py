@@ -26,6 +26,7 @@ from plantar.results.walk_rows import WalkStiffness
 CODE = "recording_odd"
 SURE = 5.0  # deviations from the others' mean; their own scatter is part of a deviation
 MUCH = 0.05  # of the stiffness; rubber that is warmer or stood under load before makes 1 to 3 %
+FAR = 0.75  # of the stiffness of all together: no rubber is so far off, but a wrong sign or unit is
 # Of the stiffness: a recording that makes less moves by a tenth of what the largest does, and all else that is wrong
 # is divided by that.
 TELLS = 0.01
@@ -91,14 +92,15 @@ def _standing(
 def _notes(odd: Odd | None, fit: AxisFit, names: Sequence[str]) -> list[Note]:
     if odd is None:
         return []
-    others = (
-        f"{len(names) - 1} other recordings, which agree within {100 * odd.apart:.2g} % (standard deviation)"
-    )
+    far, others = abs(odd.share) > FAR, f"{len(names) - 1} other recordings"
     if len(names) == 2:
         others = f"{names[1 - odd.place]}, and nobody knows which is right"
-    text = (
-        f"{names[odd.place]}: {fit.foot} {fit.axis}: stiffness is {100 * odd.share:+.2g} ± {100 * odd.std:.2g} % "
-        f"beside that of {others}. Was it recorded on another floor, on another sole, or with a joint read otherwise? "
-        "Leave it out, or fit it alone"
-    )
-    return [Note(CODE, "warning", text)]
+    elif not far:
+        others += f", which agree within {100 * odd.apart:.2g} % (standard deviation)"
+    beside = f"is {100 * odd.share:+.2g} ± {100 * odd.std:.2g} % beside"
+    why = "Was it recorded on another floor, on another sole, or with a joint read otherwise?"
+    if far:
+        beside = "is nowhere near"
+        why = "Has a joint, the IMU or a force sensor another sign, unit or axis in it?"
+    text = f"{names[odd.place]}: {fit.foot} {fit.axis}: stiffness {beside} that of {others}. {why}"
+    return [Note(CODE, "warning", f"{text} Leave it out, or fit it alone")]

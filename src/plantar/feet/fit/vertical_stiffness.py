@@ -19,7 +19,7 @@ import numpy as np
 
 from plantar.contact.phases import DOUBLE, SUPPORTS
 from plantar.contact.sole_height import height_changes
-from plantar.conventions import STIFFNESS_UNIT, Array, Mask
+from plantar.conventions import NORMAL95, STIFFNESS_UNIT, Array, Mask
 from plantar.estimation import Block, effect_of, fit_linear, influences_of, interval95, relative_std_percent
 from plantar.feet.recording import Recording
 from plantar.notes import Note
@@ -103,8 +103,13 @@ def heights_of(robot: RobotModel, recording: Recording) -> Heights | None:
     return shows and Heights(shows[0], dict(height_changes(recording.log, robot, shows[1])))
 
 
-def fit_vertical_stiffness(heights: Sequence[Heights], robot: RobotModel) -> VerticalStiffness:
-    """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
+def fit_vertical_stiffness(
+    heights: Sequence[Heights], robot: RobotModel, gains: Mapping[str, float]
+) -> VerticalStiffness:
+    """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber.
+
+    gains: share by which each foot's force sensor may be off, with 95 % probability: stiffness follows it.
+    """
     feet = tuple(robot.feet)
     blocks, changes = [own.block for own in heights], [own.changes for own in heights]
     found = (
@@ -121,7 +126,7 @@ def fit_vertical_stiffness(heights: Sequence[Heights], robot: RobotModel) -> Ver
         notes.append(Note("z_sum_only", "info", text))
     own = {foot: found.of(side) for foot, side in zip(feet, (1.0, -1.0), strict=True)}
     return VerticalStiffness(
-        tuple(_row(foot, *own[foot], found) for foot in feet),
+        tuple(_row(foot, *own[foot], found, gains[foot]) for foot in feet),
         tuple(notes),
         {foot: value for foot, (value, _) in own.items()},
         {foot: std for foot, (_, std) in own.items()},
@@ -202,13 +207,15 @@ def _both_stand(recording: Recording, feet: tuple[str, ...]) -> tuple[Mask, Arra
     return both, loads, values
 
 
-def _row(foot: str, compliance: float, std: float, found: Compliances) -> Parameter:
+def _row(foot: str, compliance: float, std: float, found: Compliances, gain: float) -> Parameter:
     """One foot's stiffness: from sum and difference where they separate, else with both feet alike."""
     low, high = interval95(compliance, std, found.freedom)
     if low <= 0 or compliance <= 0:
         return _unknown_row(foot)
-    value, interval = 1 / compliance, (1 / high, 1 / low)
-    width = (high - low) / 2 / compliance
+    width = float(np.hypot((high - low) / 2 / compliance, gain))
+    std = float(np.hypot(std, gain / NORMAL95 * compliance))
+    value = 1 / compliance
+    interval = (value / (1 + width), value / (1 - width) if width < 1 else np.inf)
     verdict: Verdict = (
         "usable" if width < USABLE_WIDTH else "weak" if width < WEAK_WIDTH else "unidentifiable"
     )

@@ -161,6 +161,12 @@ def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cau
     return [Cause("force gain", fit.values, float(np.sqrt(beyond)))] if beyond > 0 else []
 
 
+def gain_reaches(robot: RobotModel, errors: Mapping[str, GainError]) -> dict[str, float]:
+    """Share by which each foot's force sensor may put a number wrong, with 95 % probability."""
+    usual = NORMAL95 * robot.uncertainty.wrench_gain
+    return {foot: max(errors[foot].reach, usual) if foot in errors else usual for foot in robot.feet}
+
+
 def torque_gain_causes(fit: AxisFit, gains: Mapping[Axis, TorqueGain]) -> list[Cause]:
     """The same where the torques' own gain about this axis is wrong."""
     return [Cause("torque gain", fit.values, gains[fit.axis].reach / NORMAL95)] if fit.axis in gains else []
