@@ -230,3 +230,15 @@ def test_a_port_of_stamps_alone_is_refused(tmp_path: Path) -> None:
         (tmp_path / "dump" / "left" / "data.log").write_text(f"{line}\n" * 100)
         with pytest.raises(LogError, match=r"data\.log: holds no values beside packet number and stamp"):
             open_log(tmp_path / "dump", robot)
+
+
+def test_mat_files_of_another_kind_say_what_to_write_instead(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    old = tmp_path / "old.mat"
+    old.write_bytes(b"MATLAB 5.0 MAT-file, Platform: GLNXA64" + bytes(200))
+    with pytest.raises(LogError, match=r"old\.mat: is a MATLAB file older than 7\.3 .*writetable"):
+        open_log(old)
+    with h5py.File(tmp_path / "own.mat", "w") as file:
+        file["hip_angle"] = np.zeros(4)
+    with pytest.raises(LogError, match=r"holds no signal of a robot logger, but hip_angle .*writetable"):
+        open_log(tmp_path / "own.mat")

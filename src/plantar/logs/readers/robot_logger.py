@@ -24,12 +24,14 @@ from plantar.logs.readers import motion_name
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
 from plantar.logs.readers.read_limit import NUMBER, ReadLimit
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 NAME_LIMIT = 1000  # characters of a name, and joints
+OLDER = b"MATLAB 5.0"  # what files of -v6 and -v7 start with
+TABLES = "a robot logger's file; a table of your own as CSV, by writetable, with `columns` in the robot file"
 SIGNALS = {
     "joints_state/positions": "joints.position",
     "joints_state/velocities": "joints.velocity",
@@ -49,15 +51,21 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     with needs("h5py", "logs", "reading .mat logs"):
         import h5py
     notes: list[Note] = []
+    with path.open("rb") as start:
+        if start.read(len(OLDER)) == OLDER:
+            raise LogError("is a MATLAB file older than 7.3", path=path, valid=TABLES)
     try:
         with h5py.File(path, "r") as file:
             root = next(
                 (g for name, g in file.items() if isinstance(g, h5py.Group) and "joints_state" in g), file
             )
             data, roles = _signals(root, ports(robot), limit)
+            held = [str(name)[:NAME_LIMIT] for name in root]
     except (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError, MemoryError) as error:
         reason = " ".join(str(error).split())[:120]
         raise LogError(f"is not a readable MATLAB 7.3 file: {reason}", path=path) from error
+    if not data:
+        raise LogError(f"holds no signal of a robot logger, but {listing(held)}", path=path, valid=TABLES)
     return log_of_ports(motion_name(path), limit, sha256(path), data, roles, robot, notes)
 
 
