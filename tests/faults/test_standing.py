@@ -59,6 +59,7 @@ def test_a_reversed_joint_is_named_and_refused_instead_of_swapped_feet(sway: Mot
     findings = found(reversed_(sway, f"joint.{largest}.position"))
     assert [one.code for one in findings if one.fatal] == ["sign"]
     assert any(f"joint.{largest}.position" in one.text for one in findings if one.fatal)
+    assert "not the motors of a parallel linkage" in next(one.text for one in findings if one.fatal)
 
 
 def test_a_hand_that_leans_on_the_robot_reverses_and_exchanges_no_joint(sway: MotionLog) -> None:

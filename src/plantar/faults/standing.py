@@ -87,9 +87,10 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     elif as_is > NOTABLE and best < BETTER * as_is:
         alike = _alike(left, as_is)
         text = f"{alike}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
-        joint = "'joint." in min(left, key=left.__getitem__)
         certain = (certain and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
+        joint = "'joint." in min(left, key=left.__getitem__)
         valid = "valid: the signs of URDF and robot file"
+        valid += ", and the URDF's joints, not the motors of a parallel linkage" * joint
         yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", joint and certain)
     elif sides.lean > LEANING:
         text = f"columns 'imu.{stance.imu.name}.*': the ground's force leans {np.degrees(sides.lean):.1f} deg from up"
