@@ -247,10 +247,13 @@ def test_a_second_sdf_export_leaves_one_spring_in_each_joint(feet: dict[str, Any
 
 
 @pytest.mark.parametrize("kind", ["fixed", "floating"])
-def test_a_urdf_that_hangs_on_the_world_is_the_same_in_sdf(
-    kind: str, feet: dict[str, Any], urdf: Path, tmp_path: Path
+@pytest.mark.parametrize("target", ["sdf", "mjcf"])
+def test_a_urdf_that_hangs_on_the_world_is_the_same_without(
+    target: str, kind: str, feet: dict[str, Any], urdf: Path, tmp_path: Path
 ) -> None:
-    export(feet, "sdf", tmp_path / "free.sdf", model=urdf)
+    if target == "mjcf":
+        pytest.importorskip("mujoco")
+    export(feet, target, tmp_path / f"free.{target}", model=urdf)
     root = ET.parse(urdf).getroot()
     ends = {str(end.get("link")) for end in root.iterfind("joint/child")}
     trunk = next(str(link.get("name")) for link in root.findall("link") if link.get("name") not in ends)
@@ -258,9 +261,9 @@ def test_a_urdf_that_hangs_on_the_world_is_the_same_in_sdf(
     (tmp_path / "world.urdf").write_text(
         urdf.read_text().replace("</robot>", f'<link name="world"/>{joint}</robot>')
     )
-    notes = export(feet, "sdf", tmp_path / "world.sdf", model=tmp_path / "world.urdf")
+    notes = export(feet, target, tmp_path / f"world.{target}", model=tmp_path / "world.urdf")
     assert "export_world" in {note.code for note in notes}
     free, hung = (
-        ET.tostring(ET.parse(tmp_path / f"{name}.sdf").getroot()) for name in ("free", "world")
+        ET.tostring(ET.parse(tmp_path / f"{name}.{target}").getroot()) for name in ("free", "world")
     )  # comments are not parsed
     assert free == hung

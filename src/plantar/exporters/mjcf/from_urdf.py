@@ -40,6 +40,7 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: Notes) -> ET.E
     import mujoco
 
     tree = UrdfTree.load(path)
+    tree.let_go(notes)
     lost = _collision_only(tree)
     if lost:
         notes.warning(
@@ -55,10 +56,9 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: Notes) -> ET.E
         spec = _import(tree, compiler, notes)
         children = {tree.ends(joint)[1] for joint in tree.joints.values()}
         root = next(name for name in tree.links if name not in children)
-        if root != "world":
-            base = spec.body(root)
-            base.add_freejoint()
-            base.pos = [0, 0, _standing_height(spec, feet)]
+        base = spec.body(root)
+        base.add_freejoint()
+        base.pos = [0, 0, _standing_height(spec, feet)]
         text = spec.to_xml()
     except (ValueError, TypeError, StopIteration, AttributeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())[:300]

@@ -25,13 +25,11 @@ def sdf_from_urdf(path: Path, notes: Notes, meshes: Collection[str] | None = Non
     root = ET.Element("sdf", version="1.8")
     model = ET.SubElement(root, "model", name=tree.root.get("name", "robot"))
     # SDFormat knows the world without a link, and stands a model in it by the model's own pose.
-    joints = {name: joint for name, joint in tree.joints.items() if tree.ends(joint)[0] != "world"}
-    carriers = {tree.ends(joint)[1]: name for name, joint in joints.items()}
+    tree.let_go(notes)
+    carriers = {tree.ends(joint)[1]: name for name, joint in tree.joints.items()}
     if meshes is not None:
         _drop_meshes(tree, meshes, notes)
     for name, link in tree.links.items():
-        if name == "world":
-            continue
         element = ET.SubElement(model, "link", name=name)
         if name in carriers:
             ET.SubElement(element, "pose", relative_to=carriers[name])
@@ -39,11 +37,9 @@ def sdf_from_urdf(path: Path, notes: Notes, meshes: Collection[str] | None = Non
         for tag in ("collision", "visual"):
             for index, shape in enumerate(link.findall(tag)):
                 _shape(element, tag, f"{name}_{tag}_{index}", shape, tree)
-    for name, joint in joints.items():
+    for name, joint in tree.joints.items():
         _joint(model, name, joint, tree)
-    if len(joints) < len(tree.joints):
-        notes.info("export_world", "the joint to the link 'world' was left out: the robot stands freely")
-    if any(joint.find("mimic") is not None for joint in joints.values()):
+    if any(joint.find("mimic") is not None for joint in tree.joints.values()):
         notes.warning("export_mimic", "mimic joints became free joints: SDFormat words them by engine")
     notes.info("export_urdf", f"made from {path.name}; sensors, transmissions and plugins did not come along")
     return root

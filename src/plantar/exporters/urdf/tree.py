@@ -13,6 +13,7 @@ from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
 from plantar.exporters.urdf.geometry import mesh_points, solid_corners
 from plantar.exporters.xml_file import load_xml, numbers, vector
+from plantar.notes import Notes
 
 PARENTS_SEARCHED = 8  # directories above the URDF in which a package:// path may start
 
@@ -28,6 +29,15 @@ class UrdfTree:
     @classmethod
     def load(cls, path: Path) -> UrdfTree:
         return cls(load_xml(path, "robot"), path)
+
+    def let_go(self, notes: Notes) -> None:
+        """Take out the link 'world' and the joint to it, where there is one: the robot stands freely."""
+        held = [name for name, joint in self.joints.items() if self.ends(joint)[0] == "world"]
+        for element in [self.joints.pop(name) for name in held]:
+            self.root.remove(element)
+        if held and (world := self.links.pop("world", None)) is not None:
+            self.root.remove(world)
+            notes.info("export_world", "the joint to the link 'world' was left out: the robot stands freely")
 
     def link(self, name: str) -> ET.Element:
         if name not in self.links:
