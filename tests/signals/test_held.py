@@ -106,3 +106,18 @@ def test_a_channel_that_often_repeats_itself_says_nothing(share: float, held: bo
         values[place] = values[place - 1]
     values[700:900] = values[700]
     assert held_samples(values, PERIOD, full_scale=False).any() == held
+
+
+@pytest.mark.parametrize("start", [0.0, 6.0])
+def test_a_sensor_without_noise_whose_robot_rests_is_not_held(start: float) -> None:
+    """With seven digits, as logs are written; one that freezes and goes on is, and so is one that freezes for good."""
+    moved = 9.80665 + 0.3 * (1 - np.cos(1.3 * np.maximum(TIME - start - 1.5, 0.0)))
+    moved += 0.3 * (1 - np.cos(1.3 * np.minimum(TIME - start, 0.0)))
+    resting = np.array([float(f"{value:.7g}") for value in moved])
+    still = runs(np.diff(resting) == 0)
+    assert max(run.stop - run.start for run in still) > 100
+    assert not held_samples(resting, PERIOD).any()
+    for frozen in (slice(900, 950), slice(1800, 2000)):
+        stuck = resting.copy()
+        stuck[frozen] = stuck[frozen.start]
+        np.testing.assert_array_equal(np.flatnonzero(held_samples(stuck, PERIOD)), np.arange(2000)[frozen])

@@ -13,6 +13,10 @@ from plantar.signals.segments import runs
 
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
 LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
+SLOW, BESIDE = (
+    0.3,
+    5,
+)  # of a usual step, the mean of so many beside a standstill: motions begin and end slowly
 NOTABLE = 0.005  # share of the log
 BEYOND_ROUNDING = 3.0  # times what a quaternion's length is usually off by: a number of it is wrong
 ONE_STEP = 1.5  # of a scale's steps: a usual change that is smaller is one of them
@@ -32,12 +36,15 @@ def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Ma
     least = max(FEWEST, round(SHORTEST / period))
     held = np.zeros(len(values), dtype=bool)
     limits = (np.nanmin(values), np.nanmax(values)) if full_scale and np.isfinite(values).any() else ()
+    steps = np.abs(np.diff(values))
+    slow = SLOW * float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0  # nor NaN
     for run in runs(still):
-        if run.stop - run.start >= least:
+        if run.stop - run.start >= least and not _comes_to_rest(steps, run, slow):
             held[run.start : run.stop + 1] = True
     for limit in limits:
         stretches = runs(still & (values[1:] == limit))
-        if max((run.stop - run.start for run in stretches), default=0) >= FEWEST:
+        long = (run for run in stretches if run.stop - run.start >= FEWEST)
+        if not all(_comes_to_rest(steps, run, slow) for run in long):
             for run in stretches:
                 held[run.start : run.stop + 1] = True
     if not NOTABLE * len(values) < held.sum() < len(values):
@@ -46,6 +53,13 @@ def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Ma
     others = others[np.isfinite(others)]
     lively = others.size >= least and np.mean(others != 0) >= LIVELY
     return held if lively else np.zeros_like(held)
+
+
+def _comes_to_rest(steps: Array, run: slice, slow: float) -> bool:
+    """Whether the `steps` (n,) on either side of a `run` without any are small: so does a sensor without noise change
+    whose robot stops and starts; one that freezes does not slow down before, and has missed much behind."""
+    sides = [steps[max(run.start - BESIDE, 0) : run.start], steps[run.stop : run.stop + BESIDE]]
+    return all(float(np.mean(side)) < slow for side in sides if side.size)
 
 
 def coarse(values: Array) -> bool:
