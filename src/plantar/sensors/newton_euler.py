@@ -20,7 +20,7 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.below_sensor import below_sensors
 from plantar.sensors.load_errors import FootLoads
 from plantar.sensors.model_errors import drawn_parameter_errors
-from plantar.sensors.newton_sides import NewtonSides, carried, moving
+from plantar.sensors.newton_sides import SLOW, STOOD, NewtonSides, carried, moving
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
 from plantar.signals.segments import longest_run, runs
@@ -175,8 +175,9 @@ def _along(
     predicted, transfers = sides_of(motion)
     # A copy holds no differences yet: of long logs, and of all together, these are large.
     signals = replace(signals)
-    predicted, by_encoders = moving([predicted, by_encoders], period)
-    sides = NewtonSides(loads, transfers, predicted, by_encoders, period)
+    band = (SLOW, np.inf) if signals.by_encoders is None else STOOD
+    predicted, by_encoders = moving([predicted, by_encoders], period, band)
+    sides = NewtonSides(loads, transfers, predicted, by_encoders, period, band)
     found = sides.closed(robot.uncertainty, label, round(SHORTEST / period))
     if found is None or not closes(found.pair):
         return None

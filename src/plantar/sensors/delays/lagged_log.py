@@ -14,7 +14,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.refined_delays import read_in_time
 from plantar.sensors.newton_euler import with_gyroscope
-from plantar.sensors.newton_sides import SLOW
+from plantar.sensors.newton_sides import SLOW, STOOD
 from plantar.signals.filters import low_pass
 from plantar.signals.resampling import with_continuous_quaternions
 from plantar.signals.segments import longest_run
@@ -50,14 +50,15 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
     predicted, measured = np.empty((len(lags), *late.shape[2:])), np.empty((len(lags), *late.shape))
+    slow = SLOW if signals.by_encoders is None else STOOD[0]
     # One motion after the other: all of them at once would be the largest array of any log.
     for place, by in enumerate(lags):
         later = read_in_time(robot, thin, np.append(np.zeros(len(robot.feet)), by))
         motion = inertial_motion(robot, equation, inertial_signals(robot, later, CUTOFF), inner)
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
-        measured[place] = _moving(carried, thin.period)
-        predicted[place] = _moving(equation.base_wrenches(motion, parameters[None])[0], thin.period)
+        measured[place] = _moving(carried, thin.period, slow)
+        predicted[place] = _moving(equation.base_wrenches(motion, parameters[None])[0], thin.period, slow)
     together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
     if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
         return None
@@ -85,7 +86,7 @@ def _thinned(log: MotionLog) -> MotionLog:
     return MotionLog(log.name, log.time[::stride], slow, log.path)
 
 
-def _moving(sides: Array, period: float) -> Array:
-    """Sides (..., n, 6) without what postures and drifting zeros do to them."""
+def _moving(sides: Array, period: float, slow: float) -> Array:
+    """Sides (..., n, 6) without what is slower than `slow` [Hz], as of `moving`."""
     rows = np.moveaxis(sides, -2, 0)
-    return np.moveaxis(rows - low_pass(rows.reshape(len(rows), -1), period, SLOW).reshape(rows.shape), 0, -2)
+    return np.moveaxis(rows - low_pass(rows.reshape(len(rows), -1), period, slow).reshape(rows.shape), 0, -2)
