@@ -53,7 +53,8 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     slow = SLOW if signals.by_encoders is None else STOOD[0]
     # One motion after the other: all of them at once would be the largest array of any log.
     for place, by in enumerate(lags):
-        later = read_in_time(robot, thin, np.append(np.zeros(len(robot.feet)), by))
+        # Loads say which soles stand: read with the encoders, as where it is the IMU that is late.
+        later = read_in_time(robot, thin, np.full(len(robot.feet) + 1, by))
         motion = inertial_motion(robot, equation, inertial_signals(robot, later, CUTOFF), inner)
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
