@@ -3,6 +3,7 @@
     python benchmarks/worlds.py --robots hrp2 talos --worlds 50 --first 100 --jobs 2
     python benchmarks/worlds.py --worlds 6 --first 0 --without gain mount --between 0 0
     python benchmarks/worlds.py --worlds 50 --walks      three walks to fit, one to validate
+    python benchmarks/worlds.py --worlds 50 --no-accelerometer
     python benchmarks/worlds.py --worlds 40 --without wrench_cutoff gyroscope_cutoff wrench_hold  # delays too
 
 Preset `imperfect`, the paper's composed motion to fit and Myrand5 to validate. The twin plays the robot of the file,
@@ -34,6 +35,7 @@ from coverage import ROBOTS
 from plantar.conventions import NORMAL95
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.campaign import FIT
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
@@ -64,6 +66,7 @@ def main() -> None:
     parser.add_argument("--between", type=float, nargs=2, help="shares of K between recordings, from and to")
     parser.add_argument("--without", nargs="*", default=[], help="imperfections that are left out, by field")
     parser.add_argument("--walks", action="store_true", help="walks instead of the paper's composed motion")
+    parser.add_argument("--no-accelerometer", action="store_true", help="logs without its columns")
     parser.add_argument("--plain", action="store_true", help="springs and dampers without slip")
     parser.add_argument("--out", type=Path, help="every interval as one line of JSON, appended")
     chosen = parser.parse_args()
@@ -75,7 +78,7 @@ def main() -> None:
         started, found = time.perf_counter(), list[Row]()
         motions = WALKS if chosen.walks else CAMPAIGN
         _rollouts(name, preset, motions)  # kept on disk, for all processes
-        work = partial(_world, name, preset, motions)
+        work = partial(_world, name, preset, motions, chosen.no_accelerometer)
         if chosen.jobs > 1:
             with ProcessPoolExecutor(chosen.jobs) as pool:
                 for rows in pool.map(work, seeds):
@@ -142,7 +145,7 @@ def _between(rollouts: Sequence[Rollout], share: float) -> Rollout:
     return rollout_from(rollouts[0].name, mixed)
 
 
-def _world(name: str, preset: Preset, motions: tuple[str, ...], seed: int) -> list[Row]:
+def _world(name: str, preset: Preset, motions: tuple[str, ...], blind: bool, seed: int) -> list[Row]:
     """Every interval of one world beside the truth."""
     robot, bushes = _robot(name)
     world, logs, shares = preset.physics(bushes, robot), [], {}
@@ -152,7 +155,7 @@ def _world(name: str, preset: Preset, motions: tuple[str, ...], seed: int) -> li
         played = _between(rollouts, shares[motion]) if len(rollouts) > 1 else rollouts[0]
         recording = record(played, robot, world, preset, seed)
         errors = recording.truth.facts["sensor_errors"]
-        logs.append(recording.log)
+        logs.append(_blind(recording.log) if blind else recording.log)
     assert preset.robot is not None, "a preset that draws robots"
     told, drawn = true_robot(robot, preset.robot, seed)
     result = identify_feet(told, logs[:-1], logs[-1:], FeetSettings())
@@ -181,6 +184,12 @@ def _world(name: str, preset: Preset, motions: tuple[str, ...], seed: int) -> li
             }
         )
     return rows + _delay_row(name, preset, seed, result, errors)
+
+
+def _blind(log: MotionLog) -> MotionLog:
+    """The log without an accelerometer."""
+    kept = {name: values for name, values in log.columns.items() if "linear_acceleration" not in name}
+    return MotionLog(log.name, log.time, kept, log.path)
 
 
 def _delay_row(

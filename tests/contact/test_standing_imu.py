@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from biped import record, sines, sway
@@ -79,6 +80,23 @@ def test_its_slope_is_that_of_encoders_read_later(robot: RobotModel, log: Motion
     assert np.abs(moved).max() > 1e-3
     assert np.abs(moved - late * slope[INNER]).max() < 0.05 * np.abs(moved).max()
     np.testing.assert_allclose(bent.proper(late)[INNER], later[INNER])
+
+
+def test_an_imu_that_is_turned_in_its_mount_is_one_of_another_robot_file(
+    robot: RobotModel, log: MotionLog
+) -> None:
+    """But for what lies between bush and sole, which stands upright whatever the IMU says; by its slopes likewise."""
+    turn = np.array([0.004, -0.003, 0.02])
+    placement = robot.required_imu.placement
+    rpy = pin.rpy.matrixToRpy(placement.rotation @ pin.exp3(turn))
+    other = replace(robot, imu=replace(robot.required_imu, placement=replace(placement, rpy=rpy)))
+    expected, one = standing(other, log).proper(), standing(robot, log)
+    change = expected - one.proper()
+    turned = one.proper(turn=pin.exp3(turn)) - one.proper()
+    by_slope = np.tensordot(turn, one.by_turn, 1)
+    for each in (turned, by_slope):
+        assert np.abs(each - change).max() < 0.1 * np.abs(change).max()
+    assert np.abs(by_slope - turned).max() < 0.02 * np.abs(change).max()
 
 
 def test_nothing_is_known_without_an_orientation(robot: RobotModel, log: MotionLog) -> None:

@@ -12,7 +12,7 @@ from example_robots import ICUB
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.uncertainty import Uncertainty
 from plantar.robot_guess import guess_robot_file
-from plantar.sensors.model_errors import drawn_parameter_errors
+from plantar.sensors.model_errors import drawn_imu_turns, drawn_parameter_errors
 from plantar.twin.robots import hrp2
 
 
@@ -46,3 +46,11 @@ def test_links_with_next_to_no_inertia_are_drawn_too(tmp_path: Path) -> None:
     drawn = drawn_parameter_errors(load_robot(file))
     assert np.isfinite(drawn).all()
     assert np.abs(drawn).max() > 0.01
+
+
+def test_imus_are_turned_as_the_robot_file_says() -> None:
+    told = replace(hrp2.robot(), uncertainty=Uncertainty(imu_mount=0.02))
+    turns = drawn_imu_turns(told)
+    assert np.sqrt(np.mean(turns**2)) == pytest.approx(0.02, rel=0.15)
+    np.testing.assert_array_equal(drawn_imu_turns(told), turns)
+    assert len(drawn_imu_turns(replace(told, uncertainty=Uncertainty(imu_mount=0.0)))) == 0

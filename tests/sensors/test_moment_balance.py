@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from feet_trials import without
 from moments import fit_moments
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
@@ -63,9 +64,13 @@ def test_a_robot_that_is_as_its_file_says_needs_no_draws_of_another(
     assert found(exact, sweep, {".torque.": 1.1})["pitch"].mean == pytest.approx(0.1, abs=0.03)
 
 
+@pytest.mark.parametrize("left_out", ["no column", "linear_acceleration"])
 @pytest.mark.parametrize("gain", [0.85, 1.15])
-def test_the_gain_of_all_torques_is_found(twin: RobotModel, sweep: MotionLog, gain: float) -> None:
-    gains = found(twin, sweep, {".torque.": gain})
+def test_the_gain_of_all_torques_is_found(
+    twin: RobotModel, sweep: MotionLog, gain: float, left_out: str
+) -> None:
+    """With and without an accelerometer: forces say how the robot accelerates."""
+    gains = found(twin, without(sweep, left_out), {".torque.": gain})
     assert "pitch" in gains  # one sweep shows it best: the robot leans forward more than aside
     for each in gains.values():
         assert each.mean == pytest.approx(gain - 1, abs=2.5 * each.std)
@@ -82,6 +87,23 @@ def test_torques_in_another_unit_than_forces_are_found(
     assert gains["pitch"].reach > 0.7
 
 
+def test_without_an_accelerometer_no_acceleration_enters(twin: RobotModel, sweep: MotionLog) -> None:
+    """Moments about the centre of mass: three rows, which whatever the root may do leaves as they are."""
+    [residual] = newton_euler_residuals(twin, without(sweep, "linear_acceleration"))
+    still = replace(twin, uncertainty=EXACT)  # of another URDF the centre of mass is elsewhere
+    before = moment_errors(still, residual, False)
+    signals = residual.signals
+    push = np.sin(np.arange(len(signals.proper)) * signals.period)[:, None] * [1.0, 2.0, -0.5]
+    pushed = replace(residual, signals=replace(signals, proper=signals.proper + push))
+    after = moment_errors(still, pushed, False)
+    assert before.missing.shape[0] == 3
+    scale = np.abs(before.columns).max()
+    np.testing.assert_allclose(after.missing, before.missing, atol=1e-9 * scale)
+    np.testing.assert_allclose(after.columns, before.columns, atol=1e-9 * scale)
+    six = moment_errors(still, replace(residual, signals=replace(signals, by_encoders=None)), False)
+    assert six.missing.shape[0] == 6
+
+
 @pytest.mark.parametrize(
     ("gains", "axes"),
     [
@@ -92,8 +114,11 @@ def test_torques_in_another_unit_than_forces_are_found(
         ({".torque.x": -1.0}, {"roll"}),
     ],
 )
-def test_a_walk_shows_each_foots_gain(twin: RobotModel, gains: Mapping[str, float], axes: set[str]) -> None:
-    told = found(twin, checked(twin, walked()), gains, steps=True)
+@pytest.mark.parametrize("left_out", ["no column", "linear_acceleration"])
+def test_a_walk_shows_each_foots_gain(
+    twin: RobotModel, gains: Mapping[str, float], axes: set[str], left_out: str
+) -> None:
+    told = found(twin, without(checked(twin, walked()), left_out), gains, steps=True)
     assert set(told) == axes
     for axis in axes:
         for foot, share in told[axis].shares.items():

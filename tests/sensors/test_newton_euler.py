@@ -12,10 +12,11 @@ from biped import record, sway
 from biped_robot import make_robot
 from feet_trials import without
 from plantar.dynamics.inertial_motion import InertialSignals
-from plantar.estimation.delays.delay import Pair
+from plantar.estimation.delays.delay import Pair, estimate_delay
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import EXACT
 from plantar.sensors.delays.refined_delays import read_in_time
 from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals, with_gyroscope
@@ -144,3 +145,22 @@ def test_a_hand_that_pushes_is_seen_without_an_accelerometer() -> None:
     assert not newton_euler_residuals(
         twin, blind.with_columns({name: blind.column(name) + push for name in names})
     )
+
+
+@pytest.mark.parametrize("about", [0, 1])
+def test_a_turned_mount_is_allowed_for_in_a_delay_that_soles_tell(about: int) -> None:
+    """As the trunk turns, a chest IMU that leans in its mount moves otherwise than soles say: it passes for a delay."""
+    twin = hrp2.robot()
+    sweep = checked(twin, play_all(["Myrand5"], twin, PAPER, "ideal", [0])[0][0].log)
+    placement = twin.required_imu.placement
+    rpy = placement.rpy + 0.02 * np.eye(3)[about]
+    told = replace(twin, imu=replace(twin.required_imu, placement=replace(placement, rpy=rpy)))
+    stds = []
+    for mount in (0.0, 0.02):
+        unsure = replace(told, uncertainty=replace(EXACT, imu_mount=mount))
+        [residual] = newton_euler_residuals(unsure, without(sweep, "linear_acceleration"))
+        found = estimate_delay([residual.pair])
+        assert found is not None
+        stds.append(found.std)
+    assert abs(found.value) < 2.5 * stds[1]
+    assert stds[1] > 1.1 * stds[0]

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from plantar.contact.deflection import FootMotion, foot_motion, path_to
 from plantar.conventions import FORCE, GRAVITY, Array, rotation_from_quaternion
@@ -20,6 +21,7 @@ from plantar.signals.resampling import shifted
 
 # Hz: what is differentiated twice has no noise above it; far above what Newton's law is looked at below.
 DERIVED = 20.0
+TURN = 0.01  # rad, for the slope of what the IMU reads
 LEAST_LOAD = 0.3  # of the weight, that the feet carry together: with less the robot hangs or jumps
 
 
@@ -50,19 +52,31 @@ class StandingImu:
         shares = pushed / np.where(total > LEAST_LOAD * robot.mass * GRAVITY, total, np.nan)
         return cls(robot, orientation, positions, shares, log.period)
 
-    def proper(self, encoders_late: float = 0.0) -> Array:
-        """Its proper acceleration in its own frame, (N, 3) [m/s²], of encoders that report late [s]."""
+    def proper(self, encoders_late: float = 0.0, turn: Array | None = None) -> Array:
+        """Its proper acceleration in its own frame, (N, 3) [m/s²], of encoders that report late [s], and of an IMU that
+        is turned by a rotation (3, 3) from where the robot file has it."""
         positions = shifted(self.positions, self.period, encoders_late) if encoders_late else self.positions
         soles = sole_motions(self.robot, positions, self.orientation).values()
-        places = low_pass(np.hstack([sole.sole_position for sole in soles]), self.period, DERIVED)
+        rotation = rotation_from_quaternion(self.orientation)
+        places = np.hstack([sole.sole_position for sole in soles])
+        if turn is not None:
+            seen = np.einsum("nij,nfi->nfj", rotation, places.reshape(len(places), -1, 3)) @ turn
+            places = np.einsum("nij,nfj->nfi", rotation, seen).reshape(places.shape)
+        places = low_pass(places, self.period, DERIVED)
         away = differentiate(differentiate(places, self.period), self.period).reshape(len(places), -1, 3)
         world = -np.einsum("nf,nfi->ni", self.shares, away) + [0.0, 0.0, GRAVITY]
-        return np.asarray(np.einsum("nij,ni->nj", rotation_from_quaternion(self.orientation), world))
+        return np.asarray(np.einsum("nij,ni->nj", rotation, world))
 
     @property
     def along_encoders(self) -> tuple[Array, Array]:
         """`proper`, and how it changes with the moment at which encoders are read, (N, 3) [m/s³]."""
         return self.proper(), (self.proper(self.period) - self.proper(-self.period)) / (2 * self.period)
+
+    @property
+    def by_turn(self) -> list[Array]:
+        """How it changes as the IMU turns in its mount about each of its own axes, (N, 3) [m/s² per rad]."""
+        ends = [[self.proper(turn=pin.exp3(by * axis)) for by in (TURN, -TURN)] for axis in np.eye(3)]
+        return [(one - other) / (2 * TURN) for one, other in ends]
 
 
 def sole_motions(robot: RobotModel, positions: Array, orientation: Array) -> dict[str, FootMotion]:

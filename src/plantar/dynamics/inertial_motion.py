@@ -29,7 +29,7 @@ class InertialSignals:
     of them filtered without lag.
 
     `by_encoders` (n, 3): how an acceleration that comes from encoders changes with the moment at which these are read
-    [m/s³]; None of an accelerometer.
+    [m/s³], and `by_turn` (3, n, 3) with a turn of the IMU about its axes [m/s² per rad]; None of an accelerometer.
     """
 
     positions: Array
@@ -37,11 +37,15 @@ class InertialSignals:
     proper: Array
     period: float
     by_encoders: Array | None = None
+    by_turn: Array | None = None
 
     def during(self, run: slice) -> InertialSignals:
         """The signals of some consecutive samples alone."""
         slopes = None if self.by_encoders is None else self.by_encoders[run]
-        return InertialSignals(self.positions[run], self.rate[run], self.proper[run], self.period, slopes)
+        turns = None if self.by_turn is None else self.by_turn[:, run]
+        return InertialSignals(
+            self.positions[run], self.rate[run], self.proper[run], self.period, slopes, turns
+        )
 
     @cached_property
     def joints(self) -> tuple[Array, Array, Array]:
@@ -68,8 +72,9 @@ def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> Inerti
     if stood is None:
         proper = low_pass(log.linear_acceleration(imu), log.period, cutoff)
         return InertialSignals(positions, rate, proper, log.period)
-    proper, slopes = np.split(low_pass(np.hstack(stood.along_encoders), log.period, cutoff), 2, axis=1)
-    return InertialSignals(positions, rate, proper, log.period, slopes)
+    stacked = low_pass(np.hstack([*stood.along_encoders, *stood.by_turn]), log.period, cutoff)
+    proper, slopes, *turns = np.split(stacked, 5, axis=1)
+    return InertialSignals(positions, rate, proper, log.period, slopes, np.array(turns))
 
 
 def inertial_motion(
@@ -97,8 +102,14 @@ def turned_motions(
     """`inertial_motion` for each of `turns`: rotations (3, 3) of the IMU from where the robot file has it."""
     joints, measured = _joint_motion(signals, kept), _measured(signals, kept)
     link, placement = _imu(robot)
-    turned = [pin.SE3(placement.rotation @ turn, placement.translation) for turn in turns]
-    return [Motion(root_motion(equation, link, each, measured, *joints), *joints) for each in turned]
+    motions = []
+    for turn in turns:
+        turned = pin.SE3(placement.rotation @ turn, placement.translation)
+        reads = measured.copy()
+        if signals.by_turn is not None:
+            reads[:, :3] += np.tensordot(pin.log3(turn), signals.by_turn[:, kept], 1)
+        motions.append(Motion(root_motion(equation, link, turned, reads, *joints), *joints))
+    return motions
 
 
 def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> tuple[Array, Array, Array]:

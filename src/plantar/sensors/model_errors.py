@@ -1,4 +1,4 @@
-"""What a URDF that is a little wrong does to the predicted wrench: inertial parameters drawn about its own."""
+"""What a URDF and a mount of the IMU that are a little wrong do to the predicted wrench, drawn at random."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
+from plantar.dynamics import Equation
+from plantar.dynamics.inertial_motion import InertialSignals, turned_motions
 from plantar.robot.model import RobotModel
 
 # A spread is then known to a tenth of itself. Of sixteen, what a wrong URDF does to delays was a seventh too small,
 # in all logs of a robot.
 DRAWS = 48
+TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 SEED = 0  # the same draws for every recording: the robot is the same
 
 
@@ -23,6 +26,25 @@ def drawn_parameter_errors(robot: RobotModel) -> Array:
     it, and its centre of mass by `uncertainty.link_com` [m] along each axis. No draws where both are zero.
     """
     return _drawn(robot.floating_model, robot.uncertainty.link_mass, robot.uncertainty.link_com)
+
+
+def drawn_imu_turns(robot: RobotModel) -> Array:
+    """By how much an IMU may be turned in its mount at random about its axes, (draws, 3) [rad]; no draws for none."""
+    mount = robot.uncertainty.imu_mount
+    return mount * np.random.default_rng(SEED + 1).standard_normal((DRAWS if mount else 0, 3))
+
+
+def imu_turn_slopes(
+    robot: RobotModel, equation: Equation, signals: InertialSignals, kept: slice, parameters: Array
+) -> Array:
+    """How the predicted wrench changes as the IMU turns in its mount about each of its axes, (3, n, 6) [1/rad].
+
+    At the samples `kept` of `signals`; parameters (10 n_links,): of the links.
+    """
+    turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
+    turned = turned_motions(robot, equation, signals, kept, turns)
+    ends = np.array([equation.base_wrenches(motion, parameters[None])[0] for motion in turned])
+    return np.asarray((ends[:3] - ends[3:]) / (2 * TURN))
 
 
 @lru_cache(maxsize=1)  # every log asks for those of the one robot

@@ -11,12 +11,11 @@ import pinocchio as pin
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array
 from plantar.dynamics import Contact, Equation
 from plantar.dynamics.equation import equation_of
-from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
-from plantar.dynamics.motion import Motion
+from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.model_errors import drawn_parameter_errors
+from plantar.sensors.model_errors import drawn_parameter_errors, imu_turn_slopes
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
@@ -34,7 +33,6 @@ KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passe
 ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
 ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
-TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 
 @dataclass(frozen=True)
@@ -238,16 +236,14 @@ def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResi
     which the IMU is turned about each of its axes, (3, n, 6).
     """
     signals, kept, step = residual.signals, residual.kept, residual.signals.period
-
-    def slope(late: Motion, early: Motion, apart: float) -> Array:
-        ends = [equation.base_wrenches(motion, residual.parameters[None])[0] for motion in (late, early)]
-        return np.asarray((ends[0] - ends[1]) / apart)
-
-    late, early = (inertial_motion(robot, equation, signals, kept, gyroscope_late=by) for by in (step, -step))
-    turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
-    turned = turned_motions(robot, equation, signals, kept, turns)
-    by_mount = [slope(*ends, 2 * TURN) for ends in zip(turned[:3], turned[3:], strict=True)]
-    return slope(late, early, 2 * step), np.array(by_mount)
+    late, early = (
+        equation.base_wrenches(
+            inertial_motion(robot, equation, signals, kept, gyroscope_late=by), residual.parameters[None]
+        )[0]
+        for by in (step, -step)
+    )
+    by_mount = imu_turn_slopes(robot, equation, signals, kept, residual.parameters)
+    return (late - early) / (2 * step), by_mount
 
 
 def _below_to_above(period: float) -> float:

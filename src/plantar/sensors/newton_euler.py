@@ -19,8 +19,8 @@ from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.below_sensor import below_sensors
 from plantar.sensors.load_errors import FootLoads
-from plantar.sensors.model_errors import drawn_parameter_errors
-from plantar.sensors.newton_sides import NewtonSides, carried, moving
+from plantar.sensors.model_errors import drawn_imu_turns, drawn_parameter_errors, imu_turn_slopes
+from plantar.sensors.newton_sides import SLOW, STOOD, NewtonSides, carried, moving
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
 from plantar.signals.segments import longest_run, runs
@@ -175,17 +175,22 @@ def _along(
     predicted, transfers = sides_of(motion)
     # A copy holds no differences yet: of long logs, and of all together, these are large.
     signals = replace(signals)
-    predicted, by_encoders = moving([predicted, by_encoders], period)
-    sides = NewtonSides(loads, transfers, predicted, by_encoders, period)
+    band = (SLOW, np.inf) if signals.by_encoders is None else STOOD
+    predicted, by_encoders = moving([predicted, by_encoders], period, band)
+    sides = NewtonSides(loads, transfers, predicted, by_encoders, period, band)
     found = sides.closed(robot.uncertainty, label, round(SHORTEST / period))
     if found is None or not closes(found.pair):
         return None
     calm = found.calm
-    pair = replace(
-        found.pair,
-        model_errors=equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot)),
-    )
     start, stop, _ = calm.indices(len(range(*kept.indices(count))))
+    told = slice(kept.start + start * stride, kept.start + stop * stride, stride)
+    errors = equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot))
+    turns = drawn_imu_turns(robot)
+    if signals.by_turn is not None and len(turns):
+        # What an accelerometer reads as it turns stays nearly as it is; what soles say of it does not.
+        turned = np.tensordot(turns, imu_turn_slopes(robot, equation, signals, told, parameters), 1)
+        errors = turned + errors if len(errors) else turned
+    pair = replace(found.pair, model_errors=errors)
     return NewtonEulerResidual(
         pair,
         found.measured,
@@ -193,7 +198,7 @@ def _along(
         by_encoders[calm],
         loads.readings[calm],
         signals,
-        slice(kept.start + start * stride, kept.start + stop * stride, stride),
+        told,
         parameters,
         loads.changes[calm],
         not below.parameters.any() and not below.zeros.any(),

@@ -19,6 +19,9 @@ from plantar.signals.filters import low_pass
 from plantar.signals.segments import longest_run
 
 SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
+# Hz, likewise, where standing soles say how the robot accelerates: an attitude that wanders leans more below it, and
+# what is differentiated twice is noise above it.
+STOOD = (0.15, 4.0)
 WINDOW = 2.0  # s, in which the forces must follow from the prediction
 ROUNDS = 2  # over all samples first, which tells where nobody pushes, then over these
 
@@ -39,7 +42,7 @@ class Closed(NamedTuple):
 class NewtonSides:
     """What feet read, `loads`, with the `transfers` (n, 6, 6) that carry each foot's readings to the law's rows, what
     is `predicted` (n, 6) there, and how that less what feet read changes with the moment at which encoders are read,
-    `by_encoders` (n, 6).
+    `by_encoders` (n, 6); `band`: as of `moving`, which these two are.
     """
 
     loads: FootLoads
@@ -47,13 +50,14 @@ class NewtonSides:
     predicted: Array
     by_encoders: Array
     period: float
+    band: Sequence[float]
 
     def closed(self, uncertainty: Uncertainty, label: str, shortest: int) -> Closed | None:
         """The longest segment in which the law holds; None where that has fewer than `shortest` samples."""
-        loads, transfers, period = self.loads, self.transfers, self.period
-        measured = moving(carried(transfers, loads.readings), period)
-        rates = moving(carried(transfers, loads.changes), period)
-        by_load = np.array([moving([*columns], period) for columns in loads.columns(transfers)])
+        loads, transfers, period, band = self.loads, self.transfers, self.period, self.band
+        measured = moving(carried(transfers, loads.readings), period, band)
+        rates = moving(carried(transfers, loads.changes), period, band)
+        by_load = np.array([moving([*columns], period, band) for columns in loads.columns(transfers)])
         calm, taken = slice(0, len(self.predicted)), np.zeros_like(measured)
         for _ in range(ROUNDS):
             missing = measured[:, calm].sum(axis=0) - self.predicted[calm]
@@ -64,7 +68,7 @@ class NewtonSides:
             if calm.stop - calm.start < shortest:
                 return None
         own, taken = (measured - taken)[:, calm], taken[:, calm].sum(axis=0)
-        own_rates = moving(carried(transfers, loads.changes_without(errors)), period)[:, calm]
+        own_rates = moving(carried(transfers, loads.changes_without(errors)), period, band)[:, calm]
         pair = Pair(label, own.sum(axis=0), own_rates.sum(axis=0), self.predicted[calm], period)
         return Closed(calm, pair, own, own_rates, taken)
 
@@ -75,10 +79,11 @@ def carried(transfers: Sequence[Array], readings: Array) -> list[Array]:
     return [(one @ own[..., None])[..., 0] for one, own in zip(transfers, split, strict=True)]
 
 
-def moving(sides: Sequence[Array], period: float) -> Array:
-    """Sides (k, n, 6) without what postures and drifting zeros do to them."""
+def moving(sides: Sequence[Array], period: float, band: Sequence[float]) -> Array:
+    """Sides (k, n, 6) in a `band` [Hz] from what postures and drifting zeros do to them to what is noise."""
     rows = np.hstack(sides)
-    return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
+    quick = low_pass(rows, period, band[1]) if np.isfinite(band[1]) else rows
+    return (quick - low_pass(rows, period, band[0])).reshape(len(rows), -1, 6).transpose(1, 0, 2)
 
 
 def longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from biped import WEIGHT, record, sway, times
+from feet_trials import without
+from plantar.estimation.delays.lag_search import search_lags
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.lagged_log import _liveliest, lagged_log
 
@@ -44,3 +46,16 @@ def test_a_log_is_searched_alike_at_any_rate(robot: RobotModel) -> None:
     for side in ("predicted", "measured"):
         one, other = (np.std(getattr(grid, side), axis=-2) for grid in (slow, fast))
         np.testing.assert_allclose(other, one, rtol=0.05, atol=0.02 * one.max())
+
+
+def test_logs_of_unlike_rates_are_searched_at_the_same_lags(robot: RobotModel) -> None:
+    """Their grids are compared lag by lag, with and without an accelerometer."""
+    motion = sway(duration=40.0)
+    logs = [record(motion, at=times(motion, rate)) for rate in (45.0, 70.0, 200.0)]
+    for each in (logs, [without(log, "linear_acceleration") for log in logs]):
+        grids = [grid for grid in (lagged_log(robot, log) for log in each) if grid is not None]
+        assert len(grids) == 3
+        for grid in grids:
+            np.testing.assert_array_equal(grid.wrenches, grids[0].wrenches)
+            np.testing.assert_array_equal(grid.encoders, grid.wrenches)
+        assert search_lags(grids).missed.shape == (3,)

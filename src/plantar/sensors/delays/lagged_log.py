@@ -14,9 +14,9 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.refined_delays import read_in_time
 from plantar.sensors.newton_euler import with_gyroscope
-from plantar.sensors.newton_sides import SLOW
+from plantar.sensors.newton_sides import SLOW, STOOD
 from plantar.signals.filters import low_pass
-from plantar.signals.resampling import with_continuous_quaternions
+from plantar.signals.resampling import shifted, with_continuous_quaternions
 from plantar.signals.segments import longest_run
 from plantar.signals.thinning import slow_columns
 
@@ -36,28 +36,31 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
         return None
     thin = _thinned(complete)
     readings = np.stack([foot.wrench.sign * thin.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
-    lags: Array = thin.period * steps.astype(np.float64)
+    count = round(SEARCHED / STEP)
+    lags: Array = STEP * np.arange(-count, count + 1, dtype=np.float64)  # the same ones in logs of any rate
+    reach = int(np.ceil(SEARCHED / thin.period)) + 1
     signals = inertial_signals(robot, thin, CUTOFF)
     known = np.isfinite(np.hstack([*readings, signals.rate, signals.proper])).all(axis=1)
-    joints = np.pad(np.isfinite(signals.positions).all(axis=1), steps[-1])  # nothing is known beyond the ends
-    longest = longest_run(known & sliding_window_view(joints, len(steps)).all(axis=1))
-    inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
+    joints = np.pad(np.isfinite(signals.positions).all(axis=1), reach)  # nothing is known beyond the ends
+    longest = longest_run(known & sliding_window_view(joints, 2 * reach + 1).all(axis=1))
+    inner = slice(longest.start + reach, longest.stop - reach)
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None
     inner = _liveliest(readings[..., FORCE].sum(axis=0), inner, round(LONGEST / thin.period))
     equation, parameters = equation_of(robot.floating_model), model_parameters(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
-    late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
+    late = np.stack([[shifted(foot, thin.period, by, inner) for by in lags.tolist()] for foot in readings])
     predicted, measured = np.empty((len(lags), *late.shape[2:])), np.empty((len(lags), *late.shape))
+    slow = SLOW if signals.by_encoders is None else STOOD[0]
     # One motion after the other: all of them at once would be the largest array of any log.
-    for place, by in enumerate(lags):
-        later = read_in_time(robot, thin, np.append(np.zeros(len(robot.feet)), by))
+    for place, by in enumerate(lags.tolist()):
+        # Loads say which soles stand: read with the encoders, as where it is the IMU that is late.
+        later = read_in_time(robot, thin, np.full(len(robot.feet) + 1, by))
         motion = inertial_motion(robot, equation, inertial_signals(robot, later, CUTOFF), inner)
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
-        measured[place] = _moving(carried, thin.period)
-        predicted[place] = _moving(equation.base_wrenches(motion, parameters[None])[0], thin.period)
+        measured[place] = _moving(carried, thin.period, slow)
+        predicted[place] = _moving(equation.base_wrenches(motion, parameters[None])[0], thin.period, slow)
     together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
     if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
         return None
@@ -85,7 +88,7 @@ def _thinned(log: MotionLog) -> MotionLog:
     return MotionLog(log.name, log.time[::stride], slow, log.path)
 
 
-def _moving(sides: Array, period: float) -> Array:
-    """Sides (..., n, 6) without what postures and drifting zeros do to them."""
+def _moving(sides: Array, period: float, slow: float) -> Array:
+    """Sides (..., n, 6) without what is slower than `slow` [Hz], as of `moving`."""
     rows = np.moveaxis(sides, -2, 0)
-    return np.moveaxis(rows - low_pass(rows.reshape(len(rows), -1), period, SLOW).reshape(rows.shape), 0, -2)
+    return np.moveaxis(rows - low_pass(rows.reshape(len(rows), -1), period, slow).reshape(rows.shape), 0, -2)

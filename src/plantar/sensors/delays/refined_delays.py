@@ -124,11 +124,11 @@ def _step(
     logs: Sequence[MotionLog],
     tried: Sequence[Sequence[NewtonEulerResidual]],
     at: Array,
-    told: Mask | bool = True,
+    told: Mask | None = None,
 ) -> RefinedDelays | None:
     """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not.
 
-    tried: the residuals of each log read at these delays; told: as of `RefinedDelays`, what may be.
+    tried: the residuals of each log read at these delays; told: as of `RefinedDelays`, what may be; None: all.
     """
     residuals = [residual for own in tried for residual in own]
     if not residuals:
@@ -136,6 +136,7 @@ def _step(
     closed = np.array([bool(own) for own in tried])
     slowest = max(log.period for log, own in zip(logs, tried, strict=True) if own)
     balances = [residual.balance for residual in residuals]
+    told = np.ones(len(at), dtype=bool) if told is None else told
     contrasts, differ, suspect = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool), False
     usual, unsure = np.zeros(len(at)), np.full(len(at), APART)
     free = estimate_delays(balances)
@@ -148,7 +149,7 @@ def _step(
         suspect = bool((size > SUSPECT * spread)[spread >= WELL_KNOWN].any())
         differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
         # What is known no better than by what is usual moves nothing.
-        told = told & (spread < APART)
+        told = np.asarray(told & (spread < APART))
         share = np.where(told, APART**2 / (APART**2 + spread**2), 0.0)
         # What no model shows better is in the deviation of all feet's delay already.
         own = np.sqrt(np.append(variance[:-1], spread[-1] ** 2))

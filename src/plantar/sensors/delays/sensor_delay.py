@@ -112,7 +112,8 @@ def estimate_wrench_delay(
         if again is not None and (found is None or _surer(again, found)):
             found = again
     searched = np.array([grid is not None for grid in grids])
-    if _in_doubt(lags, found, searched):
+    accelerated = np.array([_accelerated(robot, log) for log in logs])
+    if _in_doubt(lags, found, searched, accelerated):
         return _doubtful(robot, lags)
     return _unseen(robot, logs) if found is None else _told(robot, found)
 
@@ -132,17 +133,22 @@ def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
     return better > worse
 
 
-def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask) -> bool:
+def _accelerated(robot: RobotModel, log: MotionLog) -> bool:
+    return robot.imu is not None and log.has_imu(robot.imu.name, "linear_acceleration")
+
+
+def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask, accelerated: Mask) -> bool:
     """Whether Newton's law, in logs that move, closes at no lag, or at lags that are not those found.
 
     Where somebody pushes it cannot close, and torques are far larger or smaller than predicted: that says nothing of
     the sensors' moments. Nor do logs that do not close beside others that show the delay well: a hand that steadies a
-    robot takes less than a push.
+    robot takes less than a push. Nor does a log without an accelerometer: what its soles say may be wrong as well.
     """
     missed = lags.missed > 1 - LEAST_CLOSED
     pushed = np.maximum(lags.power, 1 / np.maximum(lags.power, 1e-9)) > PUSHED
-    if (missed & ~pushed).any():
-        closed = found is not None and found.closed[searched][missed & ~pushed].all()
+    unclosed = missed & ~pushed & accelerated[searched]
+    if unclosed.any():
+        closed = found is not None and found.closed[searched][unclosed].all()
         return not closed and (found is None or found.std > WELL_KNOWN)
     if missed.all():
         return False
@@ -170,7 +176,7 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
 def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
     """What the robot file says of a delay that no log shows."""
     imu, prior = robot.imu, robot.uncertainty.wrench_delay
-    blind = imu is not None and not any(log.has_imu(imu.name, "linear_acceleration") for log in logs)
+    blind = imu is not None and not any(_accelerated(robot, log) for log in logs)
     why = "no log in which the ground's wrench follows from IMU, encoders and URDF"
     todo = "Record the accelerometer" if blind else "Record arm sweeps of 0.3 to 1 Hz without an operator"
     if on_force_cells(robot, logs):
