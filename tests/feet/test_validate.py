@@ -109,3 +109,12 @@ def test_every_delay_that_was_corrected_stands_in_the_result() -> None:
     found = SensorDelay(0.004, 0.0005, 30.0, True, note, {"left": 0.003, "right": 0.005}, 0.002)
     feet = {"left": 0.003, "right": 0.005}
     assert delay_estimate(found) == DelayEstimate(0.004, 0.0005, True, feet=feet, encoder_delay=0.002)
+
+
+@pytest.mark.parametrize(("name", "told"), [("a", True), ("renamed", True), ("b", False)])
+def test_a_log_that_was_fitted_is_no_unseen_one(robot: RobotModel, name: str, told: bool) -> None:
+    log = replace(record(sway("a", 1, duration=8.0)), sha256="1" * 64)
+    found = identify_feet(robot, [log], settings=LINEAR)
+    given = replace(log, name=name, sha256="2" * 64 if name == "b" else log.sha256)
+    _, notes = scored_feet(found, robot, [given])
+    assert [note.text.split(":")[0] for note in notes if note.code == "seen"] == [name] * told

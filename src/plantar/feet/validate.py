@@ -66,7 +66,8 @@ def scored_feet(
     logs: LogInputs,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[list[ValidationRow], list[Note]]:
-    """The rows of `validate_feet`, and a warning for each foot of each log that has none, with what its seconds are."""
+    """The rows of `validate_feet`, and a warning for each log that was fitted and for each foot of a log that has no row,
+    with what its seconds are."""
     found = result if isinstance(result, FeetResult) else FeetResult.load(result, residuals=False)
     robot = robot_of(robot)
     feet = {row.foot for row in found.parameters}
@@ -89,7 +90,15 @@ def scored_feet(
         raise DataError(
             "no log has samples of a standing foot that could be scored (valid: more than 1.3 s of stance)"
         )
-    return rows, _unscored(rows, recordings, feet)
+    return rows, [*_seen(found, recordings), *_unscored(rows, recordings, feet)]
+
+
+def _seen(found: FeetResult, recordings: Sequence[Recording]) -> list[Note]:
+    """A warning for each log that the result was fitted to, as its file or under another name."""
+    fitted = {row.sha256 for row in found.inputs if row.role == "fit"}
+    seen = [one.name for one in recordings if one.log.sha256 and one.log.sha256 in fitted]
+    text = "the result was fitted to this log: its errors say nothing of logs that the fit has not seen"
+    return [Note("seen", "warning", f"{name}: {text}") for name in seen]
 
 
 def _unscored(
