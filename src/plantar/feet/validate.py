@@ -66,8 +66,8 @@ def scored_feet(
     logs: LogInputs,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[list[ValidationRow], list[Note]]:
-    """The rows of `validate_feet`, and a warning for each log that was fitted, and for each foot of each log that has no
-    row, with what its seconds are."""
+    """The rows of `validate_feet`, and a warning for each log that was fitted, and for each foot of each log that
+    has no row, with what its seconds are."""
     found = result if isinstance(result, FeetResult) else FeetResult.load(result, residuals=False)
     robot = robot_of(robot)
     feet = {row.foot for row in found.parameters}
