@@ -133,6 +133,24 @@ def test_moments_of_exchanged_feet_are_no_unit(scale: float, code: str) -> None:
     assert (finding.code, finding.fatal) == (code, True)
 
 
+@pytest.mark.parametrize(
+    ("left", "unit", "code"),
+    [(0.01, False, "swapped_feet"), (0.2, False, "torque_unit"), (0.01, True, "torque_unit")],
+)
+def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
+    monkeypatch: pytest.MonkeyPatch, tilt: MotionLog, left: float, unit: bool, code: str
+) -> None:
+    stance, as_read, exchanged = Mock(), np.zeros((20, 2, 6, 3)), np.ones((20, 2, 6, 3))
+    stance.sides.return_value = Mock(misfit=0.3, lean=0.0, moment_arms=as_read)
+    stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left, moment_arms=exchanged)
+    monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
+    found = Finding("torque_unit", "columns 'wrench.*.torque.*': 8.4 times as large they would balance", True)
+    monkeypatch.setattr(
+        standing, "torque_unit", lambda *given: [found] if unit or given[2] is as_read else []
+    )
+    assert [one.code for one in check_balance(hrp2.robot(), tilt)] == [code]
+
+
 def test_all_torques_reversed_are_told(sway: MotionLog) -> None:
     torques = [name for name in sway.columns if ".torque." in name]
     findings = check_balance(hrp2.robot(), reversed_(sway, *torques))

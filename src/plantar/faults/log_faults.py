@@ -31,10 +31,8 @@ from plantar.signals.thinning import picked
 DEGREES = 180 / np.pi
 FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
 QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
-LEAST_PART, MOST_PART = (
-    0.2,
-    0.85,
-)  # of the weight: a foot that carries so much on average does not stand alone
+# Of the weight: a foot that carries so much on average does not stand alone.
+LEAST_PART, MOST_PART = 0.2, 0.85
 SHORTEST = 0.5  # s of a log from which anything can be said
 
 

@@ -13,10 +13,8 @@ from plantar.signals.segments import runs
 
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
 LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
-SLOW, BESIDE = (
-    0.3,
-    5,
-)  # of a usual step, the mean of so many beside a standstill: motions begin and end slowly
+# Of a usual step, the mean of so many beside a standstill: motions begin and end slowly.
+SLOW, BESIDE = 0.3, 5
 NOTABLE = 0.005  # share of the log
 BEYOND_ROUNDING = 3.0  # times what a quaternion's length is usually off by: a number of it is wrong
 ONE_STEP = 1.5  # of a scale's steps: a usual change that is smaller is one of them

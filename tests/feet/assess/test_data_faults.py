@@ -48,6 +48,19 @@ def test_a_fault_takes_usable_away_and_is_the_reason(
             assert before.verdict != "usable" or "something is turned" in row.reason
 
 
+def test_a_fault_of_a_log_takes_usable_from_the_vertical_stiffness_too(
+    robot: RobotModel, ready: PreparedLogs
+) -> None:
+    usable = Parameter("left", "z", "stiffness", "N/m", 2e5, 1e3, (1.9e5, 2.1e5), None, "usable", "")
+    clear = replace(ready, vertical=replace(ready.vertical, parameters=(usable,)))
+    for note, verdict in (
+        (Note("spikes", "warning", "bridged"), "usable"),
+        (Note("sign", "warning", "x"), "weak"),
+    ):
+        rows = fit_prepared(robot, with_note(clear, note)).parameters
+        assert [row.verdict for row in rows if row.axis == "z"] == [verdict]
+
+
 def test_what_was_put_right_or_is_only_said_takes_nothing_away(ready: PreparedLogs) -> None:
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
