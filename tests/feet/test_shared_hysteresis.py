@@ -14,7 +14,8 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import Axis
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.hidden_memory import TOO_SMALL
+from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, TOO_SMALL, moved_by_memory, slope_share
+from plantar.feet.fit.worth import in_place_of
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -159,6 +160,28 @@ def test_motions_too_small_to_make_the_others_slip_exclude_nothing(
     harder = of(replace(small, model=Hardening()), clear, recordings)  # nor does it of a spring that hardens
     assert harder.choice is not None
     assert harder.choice.caution is not None
+
+
+@pytest.mark.parametrize(("reach", "unsure"), [(1.9, True), (2.1, False)])
+def test_a_memory_found_where_springs_do_as_well_may_still_be_taken_for_one(
+    recordings: list[Recording], clear: AxisFit, reach: float, unsure: bool
+) -> None:
+    """A spring that is put in its place later is as unsure as the elements of other axes are stiff; steps apart."""
+    assert clear.choice is not None
+    slips = float(clear.choice.fit.shape[0])
+    own = replace(clear, choice=replace(clear.choice, reach=reach * slips))
+    found = of(own, clear, recordings)
+    assert found.model.name == "elastoplastic"
+    assert found.hidden_share == pytest.approx(slope_share(clear) if unsure else 0.0)
+    assert of(own, clear, recordings, steps=True).hidden_share == 0.0
+    spring = fit_axis(recordings, FOOT, "pitch", FeetSettings(), KelvinVoigt())
+    assert spring is not None
+    needless = in_place_of(found, spring)
+    assert needless.choice is not None
+    assert needless.hidden_share == found.hidden_share
+    assert needless.choice.caution == (NOT_EXCLUDED if unsure else clear.choice.caution)
+    moved = moved_by_memory(needless, steps=False)
+    assert moved[0] >= found.hidden_share * needless.values[0]
 
 
 def test_a_spring_that_hardens_elsewhere_is_no_memory(

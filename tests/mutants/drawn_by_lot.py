@@ -11,8 +11,8 @@ DRAWN_BY_LOT = (
     Mutant(
         "sensors/delays/lagged_log.py",
         "another log's period",
-        "measured[place] = _moving(carried, thin.period)",
-        "measured[place] = _moving(carried, log.period)",
+        "measured[place] = _moving(carried, thin.period, slow)",
+        "measured[place] = _moving(carried, log.period, slow)",
         ("sensors/delays/test_lagged_log.py",),
     ),
     Mutant(

@@ -188,8 +188,8 @@ DRAWN_ONCE_MORE = (
     Mutant(
         "sensors/newton_euler.py",
         "no turns without a gyroscope",
-        "log.has(*gyroscope) or log.orientation(imu.name) is not None",
-        "log.has(*gyroscope)",
+        "if not (turns and accelerates) and log.orientation(imu.name) is None:",
+        "if not (turns and accelerates):",
     ),
     Mutant(
         "signals/orientation.py",

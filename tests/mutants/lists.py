@@ -23,6 +23,7 @@ from of_their_kinds import OF_THEIR_KINDS
 from once_unnoticed import ONCE_UNNOTICED
 from sensor_faults import SENSOR_FAULTS
 from shared_work import SHARED_WORK
+from standing_soles import STANDING_SOLES
 
 LISTS = {
     "drawn": DRAWN,
@@ -46,4 +47,5 @@ LISTS = {
     "drawn_blind": DRAWN_BLIND,
     "literal_edges": LITERAL_EDGES,
     "drawn_afresh": DRAWN_AFRESH,
+    "standing_soles": STANDING_SOLES,
 }

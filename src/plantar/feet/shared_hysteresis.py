@@ -16,7 +16,7 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES
 from plantar.feet.assess.verdicts import WEAK_WIDTH
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
-from plantar.feet.fit.hidden_memory import SMALL, has_memory, only_too_small, slope_share
+from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, SMALL, has_memory, only_too_small, slope_share
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.regression.axis import AxisFit
@@ -24,10 +24,9 @@ from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 
-NOT_EXCLUDED = (
-    "other axes of this robot show hysteresis; the motions about this one neither show nor exclude it: with hysteresis "
-    "the stiffness is smaller"
-)
+# Times the angle at which elements of other axes slip: in motions that bend an axis less, an element is a spring as
+# well, and one that was found there may be taken for none again.
+ALIKE = 2.0
 
 
 def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
@@ -61,6 +60,13 @@ def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFo
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
                 fits[axis] = fit if own is None else _in_place_of(fit, own)
         for axis, fit in fits.items():
+            if (
+                has_memory(fit.model)
+                and fit.choice
+                and fit.choice.reach < ALIKE * slips < np.inf
+                and not _steps(one)
+            ):
+                fits[axis] = fit = replace(fit, hidden_share=share)
             with gives_up(axis, one.given_up):
                 fits[axis] = cautioned_if_hardly_turned(fit, one.thin.fitted)
         found[foot] = replace(one, fits=fits)

@@ -18,6 +18,7 @@ from plantar.sensors.delays.refined_delays import RefinedDelays
 from plantar.sensors.delays.sensor_delay import _doubtful, _in_doubt, _surer
 
 LOG: Any = SimpleNamespace(period=0.005)
+LOG_OF_SOME_SIZE: Any = SimpleNamespace(period=0.005, size=1)
 RESIDUAL: Any = SimpleNamespace(balance=SimpleNamespace(cells=[]), pair=None)
 STEADY = np.zeros(0), np.zeros((3, 3))  # weights and inverse of delays that are the same throughout
 
@@ -191,3 +192,24 @@ def test_what_may_be_late_by_anything_is_allowed_for(robot: RobotModel, edge: bo
     assert (
         f"sensors may be late by {1.96e3 * std:.0f} ms: no delays up to 250 ms were found" in found.note.text
     )
+
+
+def test_steps_that_go_back_and_forth_between_two_answers_settle(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Encoders that are told beside feet read in time, and no longer where that has moved them."""
+    told_at_last = list[bool]()
+
+    def step(_logs: object, _tried: object, at: np.ndarray, told: np.ndarray | None = None) -> RefinedDelays:
+        known = np.array([True, True, bool(at[-1] == 0.0)]) & (True if told is None else told)
+        told_at_last.append(bool(known[-1]))
+        values = np.array([0.0, 0.0, -0.0015 if known[-1] else 0.0])
+        std = np.inf if np.abs(values - at).max() > 0.0003 else 0.001
+        return RefinedDelays(values, std, 9.0, False, False, np.array([True]), 0.005, told=known)
+
+    monkeypatch.setattr(refining, "_step", step)
+    monkeypatch.setattr(refining, "residuals_at", lambda *_: [])
+    found = refining.refined_delays(robot, [LOG_OF_SOME_SIZE], map, np.zeros(3))
+    assert found is not None
+    np.testing.assert_array_equal(found.values, np.zeros(3))
+    assert told_at_last[:4] == [True, False, True, False], "both answers are tried before one stays"

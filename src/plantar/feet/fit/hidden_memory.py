@@ -30,6 +30,10 @@ TORN = (
     "the stretches between gaps are too short for hysteresis to show, and it counts as stiffness, which is smaller "
     "without it (record logs without gaps)"
 )
+NOT_EXCLUDED = (
+    "other axes of this robot show hysteresis; the motions about this one neither show nor exclude it: with hysteresis "
+    "the stiffness is smaller"
+)
 UNBELIEVED = "the sensors' delays are not known, and a delay looks like it"
 
 

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from plantar.estimation import interval95
+from plantar.feet.fit.hidden_memory import NOT_EXCLUDED
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 
@@ -60,7 +61,10 @@ def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
 
 
 def in_place_of(fit: AxisFit, simpler: AxisFit) -> AxisFit:
-    """The fit of a simpler model in place of a richer one that hardly matters, with what was tried and why."""
+    """The fit of a simpler model in place of a richer one that hardly matters, with what was tried and why.
+
+    Where motions are too small to tell a memory that other axes have from a spring, it is not excluded by that.
+    """
     if isinstance(simpler.model, KelvinVoigt):
         changes = 100 * np.abs(fit.numbers[:2] / simpler.numbers[:2] - 1)
         reason = (
@@ -71,6 +75,7 @@ def in_place_of(fit: AxisFit, simpler: AxisFit) -> AxisFit:
         reason = f"what {fit.model.name} adds is no more than errors of robot file and sensors may make"
     choice = fit.choice and replace(
         fit.choice,
+        caution=NOT_EXCLUDED if fit.hidden_share else fit.choice.caution,
         ranking=tuple(
             replace(
                 score,
@@ -80,4 +85,4 @@ def in_place_of(fit: AxisFit, simpler: AxisFit) -> AxisFit:
             for score in fit.choice.ranking
         ),
     )
-    return replace(simpler, choice=choice, reason=reason)
+    return replace(simpler, choice=choice, reason=reason, hidden_share=fit.hidden_share)
