@@ -21,6 +21,7 @@ from literal_edges import LITERAL_EDGES
 from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
 from once_unnoticed import ONCE_UNNOTICED
+from other_robots import OTHER_ROBOTS
 from sensor_faults import SENSOR_FAULTS
 from shared_work import SHARED_WORK
 from standing_soles import STANDING_SOLES
@@ -48,4 +49,5 @@ LISTS = {
     "literal_edges": LITERAL_EDGES,
     "drawn_afresh": DRAWN_AFRESH,
     "standing_soles": STANDING_SOLES,
+    "other_robots": OTHER_ROBOTS,
 }
