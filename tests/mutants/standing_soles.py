@@ -63,7 +63,7 @@ STANDING_SOLES = (
         ("sensors/delays/test_edges.py",),
     ),
     Mutant(
-        "sensors/delays/sensor_delay.py", "soles on rock", "SOLES_GIVE = 0.0005", "SOLES_GIVE = 0.0", NEWTON
+        "sensors/delays/sensor_delay.py", "soles on rock", "SOLES_GIVE = 0.0005", "SOLES_GIVE = 0.0", TOLD
     ),
     Mutant(
         "sensors/delays/lagged_log.py",
