@@ -70,3 +70,22 @@ def test_feet_are_beyond_their_limits_where_they_slip(sign: float) -> None:
         beyond.append(((aside - FRICTION * load[:, place]) / (FRICTION * reach.weight)).max())
     assert max(beyond) / CORNER <= reach.used(shape) <= max(beyond) + 1e-9
     assert max(beyond) > 0.2, "or nothing was asked of the floor"
+
+
+def test_the_pendulum_is_every_link_about_the_middle_of_the_bushes() -> None:
+    legs, pendulum = design_samples.legs(), design_samples.linear().pendulum
+    model, data, (rest, _, poses) = legs.model, legs.model.createData(), legs.rest
+    pin.forwardKinematics(model, data, rest)
+    middle = sum(pose.translation for pose in poses.values()) / len(poses)
+    second, first = np.zeros((3, 3)), np.zeros(3)  # moments of mass: of squares, and of places
+    for place, body in zip(data.oMi, model.inertias, strict=True):
+        arm = place.act(body.lever) - middle
+        turned = place.rotation @ body.inertia @ place.rotation.T
+        second += turned.trace() / 2 * np.eye(3) - turned + body.mass * np.outer(arm, arm)
+        first += body.mass * arm
+    mass = sum(body.mass for body in model.inertias)
+    assert pendulum.mass == pytest.approx(mass)
+    assert pendulum.height == pytest.approx(first[2] / mass)
+    assert pendulum.inertia == pytest.approx([second[1, 1] + second[2, 2], second[0, 0] + second[2, 2]])
+    for foot, pose in poses.items():
+        assert pendulum.places[foot] == pytest.approx(pose.translation[:2] - middle[:2], abs=1e-9)

@@ -168,6 +168,11 @@ def test_each_draw_of_a_rehearsal_has_its_own_sensors_and_a_floor_for_its_steps(
         assert soft.feet_found(hrp2.robot()) == (500, 501, 502, 503)
         assert told.feet_found(hrp2.robot()) == (707, None, 709, 710)
     assert seeds == [500, 501, 502, 503, 707, 708, 709, 710]
+    told_once = design_samples.told()
+    for factor, world in zip((0.5, 0.707), played, strict=True):
+        assert {(bush.pitch_stiffness, bush.roll_stiffness) for bush in (world.bushes or {}).values()} == {
+            2 * (factor * told_once.stiffness,)
+        }
     stiffness, damping, _ = played[0].floor
     assert damping * played[0].timestep == pytest.approx(1.0)
     assert damping**2 == pytest.approx(4 * stiffness)

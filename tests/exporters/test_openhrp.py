@@ -24,6 +24,14 @@ def test_openhrp_lists_joint_spring_damping(feet: dict[str, Any], tmp_path: Path
                         "RLEG_BUSH_ROLL,323,17.53 RLEG_BUSH_PITCH,434,15.89")  # fmt: skip
 
 
+def test_openhrp_does_not_tell_of_rests_that_its_springs_lack(feet: dict[str, Any], tmp_path: Path) -> None:
+    for with_offset in (False, True):
+        export(feet, "openhrp", tmp_path / "bush.conf", with_offset=with_offset)
+        text = (tmp_path / "bush.conf").read_text()
+        assert "rests at -offset/K" not in text
+        assert "offset =" not in text
+
+
 def test_openhrp_reads_what_it_writes(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "openhrp", tmp_path / "bush.conf")
     read = read_customizer(tmp_path / "bush.conf")

@@ -9,7 +9,7 @@ import pytest
 
 from biped import record, sway
 from biped_robot import Frame, Mounting, make_robot
-from plantar.faults.stance import Stance, stance_of, usual
+from plantar.faults.stance import Stance, StanceSides, stance_of, usual
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
@@ -54,3 +54,21 @@ def test_a_log_in_the_air_has_no_stance(robot: RobotModel) -> None:
     log = record(sway(duration=12.0))
     light = {name: 0 * log.column(name) for name in log.columns if name.startswith("wrench.")}
     assert stance_of(robot, MotionLog(log.name, log.time, {**log.columns, **light})) is None
+
+
+@pytest.mark.parametrize("degrees", [-120.0, -30.0, 0.0, 90.0])
+def test_up_that_sways_in_another_direction_than_the_force_is_turned(degrees: float) -> None:
+    """By the right hand about the vertical, from up's direction to the force's."""
+    phase = np.linspace(0.0, 40.0, 50)
+    tilts = np.radians(3.0) * np.column_stack([np.cos(phase), 0.3 * np.sin(3 * phase)])
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    noise = np.radians(0.2) * np.random.default_rng(1).normal(size=tilts.shape)
+    up, push = (
+        np.column_stack([level, np.ones(len(level))])
+        for level in (tilts, tilts @ np.array([[cos, sin], [-sin, cos]]) + noise)
+    )
+    angle, deviation = StanceSides(np.zeros((50, 2, 6, 3)), up, push).turn
+    # Noise across of 0.2 degrees beside tilts of `size` degrees in all: the angle of a mean of so many.
+    size = np.degrees(np.sqrt(np.sum((tilts - tilts.mean(axis=0)) ** 2)))
+    assert deviation == pytest.approx(0.2 * np.sqrt(2) / size, rel=0.3)
+    assert angle == pytest.approx(np.radians(degrees), abs=3 * deviation)

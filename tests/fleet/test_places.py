@@ -112,3 +112,13 @@ def test_places_beside_a_manifest() -> None:
     assert joined_place(Path("/a/fleet.csv"), "/b/x.csv") == "/b/x.csv"
     assert joined_place(Path("/a/fleet.csv"), "s3://b/x.csv") == "s3://b/x.csv"
     assert (name_of("s3://b/x.csv"), name_of("/b/bag/")) == ("x.csv", "bag")
+
+
+def test_an_error_without_words_is_told_by_its_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise Refusal
+
+    for name in ("info", "glob", "find", "isdir", "modified"):
+        monkeypatch.setattr(Closed, name, refuse)
+    with pytest.raises(PlantarError, match=r"closed://bucket/log\.csv.* cannot be read: Refusal"):
+        stamp_of("closed://bucket/log.csv")

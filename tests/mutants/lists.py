@@ -25,6 +25,7 @@ from other_robots import OTHER_ROBOTS
 from sensor_faults import SENSOR_FAULTS
 from shared_work import SHARED_WORK
 from standing_soles import STANDING_SOLES
+from unlisted import UNLISTED
 
 LISTS = {
     "drawn": DRAWN,
@@ -50,4 +51,5 @@ LISTS = {
     "drawn_afresh": DRAWN_AFRESH,
     "standing_soles": STANDING_SOLES,
     "other_robots": OTHER_ROBOTS,
+    "unlisted": UNLISTED,
 }

@@ -156,6 +156,18 @@ def test_rates_come_from_the_attitude_where_no_gyroscope_is(robot: RobotModel) -
     expect_truth(FootEstimator(robot, wrench_delay=0.0).replay(log), 2e-3, 1e-2)
 
 
+def test_a_gyroscope_beside_an_attitude_tells_the_rates(robot: RobotModel) -> None:
+    """One that reads nothing leaves the joints' rates alone: they are not the bushes'."""
+    log = record(sway(duration=20.0))
+    nothing = {name: 0 * column for name, column in log.columns.items() if ".angular_velocity." in name}
+    still, told, bare = (
+        FootEstimator(robot, wrench_delay=0.0).replay(each).rows
+        for each in (with_columns(log, **nothing), log, without(log, "angular_velocity"))
+    )
+    apart = np.nanmax(np.abs(still - told)[-1])
+    assert apart > 10 * np.nanmax(np.abs(bare - told)[-1]) > 0
+
+
 def test_gyroscope_and_accelerometer_stand_for_an_attitude(robot: RobotModel) -> None:
     log = without(record(sway(duration=120.0)), "orientation")
     replay = FootEstimator(robot, wrench_delay=0.0).replay(log)

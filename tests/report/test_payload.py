@@ -14,9 +14,9 @@ from plantar.results.residuals import Track, read_residuals
 from report_samples import write_campaign
 
 
-def decoded(track: Track) -> dict[str, np.ndarray]:
+def decoded(track: Track, stride: int = 1) -> dict[str, np.ndarray]:
     """The payload read back, written apart from both encoder and browser code."""
-    payload = encode_motion([track])
+    payload = encode_motion([track], stride)
     raw = zlib.decompress(base64.b64decode(payload.data))
     (header,) = payload.header["tracks"]
     n, at = header["n"], 0
@@ -70,3 +70,14 @@ def test_odd_channels_are_coded_without_harm(values: np.ndarray) -> None:
     finite = values[np.isfinite(values)]
     if finite.size:
         np.testing.assert_allclose(back[np.isfinite(back)], finite, atol=np.ptp(finite) / 1000)
+
+
+def test_of_a_long_motion_each_so_many_samples_travel() -> None:
+    time = np.linspace(2.0, 3.0, 101)
+    support = np.where(time < 2.5, "single", "double")
+    track = Track("m", "fit", "left", time, time < 2.25, support, {"force_z": 100.0 * time})
+    out = decoded(track, 7)
+    np.testing.assert_allclose(out["time"], time[::7], atol=1e-6)
+    np.testing.assert_array_equal(out["used"], track.used[::7])
+    np.testing.assert_array_equal(out["support"], support[::7])
+    np.testing.assert_allclose(out["force_z"], 100.0 * time[::7], atol=0.1)

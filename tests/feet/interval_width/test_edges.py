@@ -84,6 +84,16 @@ def test_gains_are_told_in_per_cent_of_the_weight(robot: RobotModel) -> None:
     assert force_gain_notes(robot, {"left": GainError(0.02, 0.01, 0.01, 0.01)}) == []
 
 
+def test_forces_that_do_not_add_up_to_a_weighed_robot_are_the_sensors_fault(robot: RobotModel) -> None:
+    errors = {"left": GainError(0.123, 0.01, 0.01, 0.01)}
+    (of_urdf,), (of_weighed,) = (
+        force_gain_notes(each, errors) for each in (robot, replace(robot, weighed=robot.mass))
+    )
+    assert "Either the URDF's masses are wrong, or the force sensors' gains, which" in of_urdf.text
+    assert "add up to the weighed 60.0 kg" in of_weighed.text
+    assert "Wrong are the force sensors' gains, which" in of_weighed.text
+
+
 def sways(*stiffness: float) -> list[Recording]:
     found = []
     for seed, own in enumerate(stiffness):

@@ -148,3 +148,14 @@ def test_unseen_walks_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     charts = unseen_charts(replace(result, stances=(*result.stances, *more)), twice)
     assert [len(chart.panels) for chart in charts] == [1, 1]
     assert charts[0].remark == "1 further unseen walks stand under Motions."
+
+
+def test_an_edge_parts_fitted_walks_from_unseen_ones() -> None:
+    result = walk_result()
+    for kept in (("walk_2", "walk_3"), ("walk_1", "walk_2", "walk_3")):
+        stances = [row for row in result.stances if row.motion in kept]
+        chart = strip_charts(replace(result, stances=tuple(stances)))[0]
+        (edge,) = (mark for mark in chart.panels[0].marks if isinstance(mark, Path) and mark.kind == "edge")
+        at = float(edge.points[1:].split()[0])
+        assert max(dot.x for dot in dots(chart, "stance fit")) < at
+        assert at < min(dot.x for dot in dots(chart, "stance validate"))
