@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from at_their_edges import AT_THEIR_EDGES
+from by_hand import BY_HAND
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
@@ -50,4 +51,5 @@ LISTS = {
     "drawn_afresh": DRAWN_AFRESH,
     "standing_soles": STANDING_SOLES,
     "other_robots": OTHER_ROBOTS,
+    "by_hand": BY_HAND,
 }
