@@ -1,4 +1,4 @@
-"""Careless changes of geometry, of what a contact pushes with and of what is left out, that hand-solved cases notice."""
+"""Careless changes of geometry, of a contact's push and of what is left out, which hand-solved cases notice."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def test_attitude_and_accelerometer_feel_the_same_up() -> None:
 
 
 def test_only_samples_are_taken_that_every_sensor_and_joint_has_read_under_the_robot() -> None:
-    """One value is missing of a force sensor, of the attitude, and of each of three joints; early on nothing carries."""
+    """Gaps of a force sensor, of the attitude and of each of three joints; early on the feet carry too little."""
     model = pin.buildSampleModelManipulator()
     names = list(model.names)[1:4]
     weight = 500.0
