@@ -6,6 +6,7 @@ from mutant import Mutant
 
 IMU = ("contact/test_standing_imu.py",)
 NEWTON = ("sensors/test_newton_euler.py",)
+TOLD = ("sensors/delays/test_told_delay.py",)
 MOMENTS = ("sensors/test_moment_balance.py",)
 SHARED = ("feet/test_shared_hysteresis.py",)
 
@@ -60,6 +61,9 @@ STANDING_SOLES = (
         "missed & ~pushed & accelerated[searched]",
         "missed & ~pushed",
         ("sensors/delays/test_edges.py",),
+    ),
+    Mutant(
+        "sensors/delays/sensor_delay.py", "soles on rock", "SOLES_GIVE = 0.0005", "SOLES_GIVE = 0.0", TOLD
     ),
     Mutant(
         "sensors/delays/lagged_log.py",

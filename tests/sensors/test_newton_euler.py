@@ -128,7 +128,7 @@ def test_standing_soles_tell_delays_where_no_accelerometer_is_recorded(late: flo
     blind = without(sweep, "linear_acceleration")
     found = estimate_wrench_delay(twin, [read_in_time(twin, blind, np.array([-late, -late, 0.0]))])
     assert found.delay == pytest.approx(late, abs=3 * found.std)
-    assert found.std < 0.001
+    assert 0.0005 < found.std < 0.001, "no floor is so hard"
     by_encoders = estimate_wrench_delay(twin, [read_in_time(twin, blind, np.array([0.0, 0.0, -late]))])
     assert by_encoders.encoders == pytest.approx(late, abs=0.001)
     assert by_encoders.delay == pytest.approx(0.0, abs=0.002)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -88,3 +90,16 @@ def test_clocks_that_run_apart_widen_by_what_they_do(usual: RobotModel) -> None:
     assert (found.delay, found.std) == pytest.approx((0.004, np.hypot(0.001, 0.006 / np.sqrt(12))))
     assert found.doubtful
     assert found.note == drift.note
+
+
+@pytest.mark.parametrize(
+    ("accelerated", "more"), [((), 0.0), ((True,), 0.0), ((False, True), 0.0), ((False, False), 0.0005)]
+)
+def test_what_soles_alone_tell_is_half_a_millisecond_less_sure(
+    usual: RobotModel, accelerated: tuple[bool, ...], more: float
+) -> None:
+    told: Any = tuple(SimpleNamespace(accelerated=each) for each in accelerated)
+    found = _told(usual, replace(shown(0.02, 0.0004), residuals=told))
+    same = _told(usual, shown(0.02, float(np.hypot(0.0004, more))))
+    assert (found.delay, found.std) == pytest.approx((same.delay, same.std))
+    assert found.residuals == told
