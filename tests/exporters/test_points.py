@@ -11,9 +11,9 @@ import pytest
 from plantar.conventions import Axis
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact import fit
-from plantar.exporters.contact.alone import Measured
+from plantar.exporters.contact.alone import INERTIA_TIME, Measured, contact_attributes
 from plantar.exporters.contact.fit import LOADS
-from plantar.exporters.contact.points import PointFoot, points_for, sides_of
+from plantar.exporters.contact.points import Point, PointFoot, points_for, sides_of
 from plantar.exporters.contact.springs import (
     placed,
     pushes,
@@ -171,3 +171,29 @@ def test_what_the_grounds_push_takes_off_k_is_a_warning_beyond_a_twentieth(
     off = float(re.search(r"off by ([-+][\d.]+) %", note.text)[1])  # type: ignore[index]
     assert off == pytest.approx(-100 * 0.6 * 600 * 0.09 / stiffness, abs=0.15)
     assert note.severity == severity
+
+
+@pytest.mark.parametrize("mass", [0.2, 1.0, 8.0])
+def test_a_point_pushes_with_its_own_spring_and_damper_by_mujocos_contact_law(mass: float) -> None:
+    """MuJoCo: b = 2/(d·t), k = d/(d²t²ζ²); the contact pushes d(k·r + b·v)/((1 - d)Â) and adds d/((1 - d)Â) of mass."""
+    point, inverse = Point(0.1, 0.05, 4e4, 300.0), 1 / mass
+    told = contact_attributes(point, inverse)
+    time, ratio = (float(number) for number in told["solref"].split())
+    impedance = float(told["solimp"].split()[0])
+    assert told["solimp"].split()[1] == told["solimp"].split()[0], "constant"
+    per = (1 - impedance) * inverse
+    assert impedance * 2 / (impedance * time) / per == pytest.approx(point.damping, rel=1e-6)
+    stiffness = impedance * impedance / (impedance * time * ratio) ** 2
+    assert stiffness / per == pytest.approx(point.stiffness, rel=1e-6)
+    assert impedance / per == pytest.approx(INERTIA_TIME * point.damping, rel=1e-6)
+
+
+def test_a_point_without_damper_is_a_bare_spring() -> None:
+    """Its inertia gives a foot on it the natural frequency √2/time constant of a spring alone; negative: direct."""
+    told = contact_attributes(Point(0.1, 0.05, 4e4, 0.0), 0.5)
+    stiffness, damping = (float(number) for number in told["solref"].split())
+    impedance = float(told["solimp"].split()[0])
+    per = (1 - impedance) * 0.5
+    assert -stiffness / per == pytest.approx(4e4, rel=1e-6)
+    assert damping < 0 < 1e-6 + damping
+    assert impedance / per == pytest.approx(0.5 * INERTIA_TIME**2 * 4e4, rel=1e-6)

@@ -9,7 +9,7 @@ import pytest
 
 from biped import drawn_up, record, sway
 from plantar.contact.reasons import Reason
-from plantar.errors import RobotError
+from plantar.errors import DataError, RobotError
 from plantar.feet.prepare_log import checked, prepare
 from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
 from plantar.online.estimator_model import estimator_model
@@ -66,6 +66,15 @@ def test_an_accelerometer_that_drivers_fill_with_zeros_is_no_accelerometer(robot
     assert log.has(*names)
     assert not zeros.has(*names)
     assert [note.severity for note in zeros.notes if "hold no value; not used" in note.text] == ["warning"]
+
+
+def test_without_an_orientation_an_accelerometer_has_to_show_gravity(robot: RobotModel) -> None:
+    log = record(sway(duration=4.0))
+    small = {name: 0.05 * log.column(name) for name in imu_columns("chest", "linear_acceleration")}
+    odd = log.with_columns(small)
+    assert not checked(robot, odd).has(*small)
+    with pytest.raises(DataError, match="as of an acceleration without gravity"):
+        checked(robot, odd.without(imu_columns("chest", "orientation")))
 
 
 def test_a_foot_that_sways_is_not_in_the_air(robot: RobotModel) -> None:

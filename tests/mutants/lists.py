@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from at_their_edges import AT_THEIR_EDGES
+from by_hand import BY_HAND
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
@@ -52,4 +53,5 @@ LISTS = {
     "standing_soles": STANDING_SOLES,
     "other_robots": OTHER_ROBOTS,
     "unlisted": UNLISTED,
+    "by_hand": BY_HAND,
 }

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from scipy.spatial.transform import Rotation
 
-from plantar.logs.motion_log import MotionLog
-from plantar.robot_guess.stance import felt_up
+from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.robot_guess.stance import CARRIES, _rows, felt_up
 
 TIME = 0.01 * np.arange(1000)
 
@@ -33,3 +34,24 @@ def test_attitude_and_accelerometer_feel_the_same_up() -> None:
     inside = slice(100, -100)  # where the filter is at home
     assert felt_up(read, "chest")[inside] == pytest.approx(up[inside], abs=0.02)
     assert np.isnan(felt_up(MotionLog("c", TIME, {}), "chest")).all()
+
+
+def test_only_samples_are_taken_that_every_sensor_and_joint_has_read_under_the_robot() -> None:
+    """Gaps of a force sensor, of the attitude and of each of three joints; early on the feet carry too little."""
+    model = pin.buildSampleModelManipulator()
+    names = list(model.names)[1:4]
+    weight = 500.0
+    columns = {f"imu.chest.orientation.{axis}": np.full(1000, float(axis == "w")) for axis in "wxyz"}
+    columns |= {f"joint.{name}.position": np.zeros(1000) for name in names}
+    columns |= {column: np.zeros(1000) for side in ("left", "right") for column in wrench_columns(side)}
+    columns["wrench.left.force.z"][:] = columns["wrench.right.force.z"][:] = 0.51 * CARRIES * weight
+    columns["wrench.left.force.z"][:100] = 0.48 * CARRIES * weight
+    missing = {"wrench.right.torque.x": 200, "imu.chest.orientation.x": 300}
+    missing |= {f"joint.{name}.position": 400 + 100 * place for place, name in enumerate(names)}
+    for column, sample in missing.items():
+        columns[column][sample - 10 : sample + 10] = np.nan
+    taken = _rows(MotionLog("a", TIME, columns), {"l": "left", "r": "right"}, "chest", weight, model)
+    left_out = {sample for middle in missing.values() for sample in range(middle - 10, middle + 10)}
+    assert not left_out & set(taken.tolist())
+    assert taken.min() >= 100
+    assert len(taken) > 40

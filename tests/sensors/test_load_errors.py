@@ -41,9 +41,11 @@ def sides(
     read = read - late * changes
     rows = FootLoads.of(*(np.hstack([*each]) for each in (read, changes)))
     transfers = [np.tile(np.eye(6), (COUNT, 1, 1))] * 2
-    return NewtonSides(rows, transfers, moving([trunk], PERIOD)[0], np.zeros_like(trunk), PERIOD), true
+    predicted = moving([trunk], PERIOD, BAND)[0]
+    return NewtonSides(rows, transfers, predicted, np.zeros_like(trunk), PERIOD, BAND), true
 
 
+BAND = (0.05, np.inf)  # Hz
 TURNED = np.array([[0.015, -0.02, 0.004, 0.003, 0.0, -0.002], [-0.01, 0.018, -0.006, 0.0, 0.004, 0.001]])
 
 
@@ -62,8 +64,8 @@ def test_errors_are_found_as_they_are() -> None:
     """What both feet read alike of a weight that does not change passes for a zero's drift, and stays."""
     law = sides(TURNED)[0]
     loads = law.loads
-    columns = np.array([moving([*one], PERIOD) for one in loads.columns(law.transfers)])
-    measured = moving([loads.readings.reshape(COUNT, 2, 6).sum(axis=1)], PERIOD)[0]
+    columns = np.array([moving([*one], PERIOD, BAND) for one in loads.columns(law.transfers)])
+    measured = moving([loads.readings.reshape(COUNT, 2, 6).sum(axis=1)], PERIOD, BAND)[0]
     found = load_errors(Uncertainty(), UPRIGHT, columns, [0 * measured], measured - law.predicted, PERIOD)
     np.testing.assert_allclose(found[0] - found[1], TURNED[0] - TURNED[1], atol=1e-4)
 

@@ -14,6 +14,7 @@ from plantar.notes import Finding
 from plantar.signals.held import coarse
 from plantar.signals.segments import complete
 
+ACCELEROMETER_UNIT = "accelerometer_unit"
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
 FREE = 2.0  # m/s²: a robot that stands or walks accelerates by less, usually
 RIGHT_ANGLE = np.radians(8)  # likewise: less is a mount or an estimator
@@ -73,7 +74,7 @@ def without_odd_accelerometer(name: str, log: MotionLog) -> MotionLog:
 def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
     """Whether the accelerometer's usual norm is gravity's, and its reading no constant beside an IMU that turns.
 
-    Fatal where nothing else shows gravity, or where it is a unit that the user can name.
+    Fatal where it is a unit that the user can name, or the sensor is dead and nothing else shows gravity.
     """
     acceleration = log.linear_acceleration(name)
     norm = np.linalg.norm(acceleration, axis=1)
@@ -87,14 +88,14 @@ def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
     size = float(np.nanmedian(norm))
     if 0.8 < size < 1.2:
         return Finding(
-            "accelerometer_unit",
+            ACCELEROMETER_UNIT,
             f"{where}: its norm is {size:.3g}, which looks like g, or like an acceleration without gravity ({valid})",
             True,
         )
     if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
         like = ", as of an acceleration without gravity" if size < FREE else ""
         text = f"{where}: its usual norm is {size:.3g}{like}; not used ({valid})"
-        return Finding("accelerometer_unit", text, alone)
+        return Finding(ACCELEROMETER_UNIT, text)
     return None
 
 

@@ -176,8 +176,8 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
 
 def _foot_missing(foot: str, carried: float, mass: float) -> Finding:
     text = f"feet: the robot file names '{foot}' alone, which carries {carried:.3g} of {mass:.3g} kg: another"
-    valid = "both feet; 'contact: always' for one that stands throughout beside one without a force sensor"
-    return Finding("foot_missing", f"{text} foot stands, too (valid: {valid})", True)
+    advice = "name it as well, if it has a force sensor: together they show delays and gains"
+    return Finding("foot_missing", f"{text} foot stands, too; {advice}")
 
 
 def _of_its_kind(column: str, columns: Sequence[str]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.errors import RobotError
 from plantar.faults.gyroscope import BY_LEANS, beside_leans
-from plantar.faults.imu import without_odd_accelerometer
+from plantar.faults.imu import ACCELEROMETER_UNIT, without_odd_accelerometer
 from plantar.faults.log_faults import check_log, finding_notes, refuse_impossible
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
@@ -68,6 +69,8 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     else:
         findings = check_log(robot, log) if findings is None else findings
     refuse_impossible(log, findings)
+    if log.orientation(imu.name) is None:  # feet need to know where up is
+        refuse_impossible(log, [replace(one, fatal=one.code == ACCELEROMETER_UNIT) for one in findings])
     odd = finding_notes(log, findings)
     return_freed(log.size)
     even = without_odd_accelerometer(imu.name, even or _even(log))

@@ -126,6 +126,8 @@ def test_a_walk_is_told_from_others_by_the_scatter_of_its_stances() -> None:
     (text,) = walks((378.0, 4.0), (420.0, 4.0))
     assert "walk_0" in text
     assert "walk_1" in text
+    # Beside a first walk that is itself hardly known, to a seventh, no other one is odd.
+    assert walks((378.0, 60.0), (420.0, 4.0)) == []
     assert walks((420.0, 40.0), (378.0, 40.0), (420.0, 40.0)) == []
     assert walks((420.0, 4.0)) == []
 
