@@ -87,6 +87,7 @@ void AxisRegression::find_deviations() noexcept {
     for (int j = 0; j < UNKNOWNS; ++j) {  // what the prior may be off by
       const double moves = row[j] * noise_ * noise_ / (prior_.spread[j] * prior_.scale[j]);
       told += moves * moves;
+      if (i == COMPLIANCE && j == COMPLIANCE) values_.held = moves / (prior_.spread[j] * prior_.scale[j]);
       if (i == STIFFNESS && j == SLIP_TORQUE) values_.by_element = std::abs(moves) / prior_.scale[i];
     }
     const double white = std::max(resolved - told, 0.0) * together_ / COLOUR;

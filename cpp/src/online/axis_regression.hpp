@@ -86,6 +86,7 @@ struct AxisValues {
   std::array<double, UNKNOWNS> resolved = {};  // what the rows' scatter and the prior alone would leave
   std::array<double, UNKNOWNS> moved = {};  // by the block that is open, of which no group has told yet how it differs
   double by_element = 0.0;                  // of the stiffness, by what was told of the element's torque
+  double held = 0.0;  // share of the compliance's way from what the rows alone say to the prior's mean
   double offset = 0.0;
   Untold late, turned;                      // than was told [s]; of the turning's rate, the IMU's delay times K [N·m·s/rad]
   std::array<double, UNKNOWNS> by_late = {};  // what a torque that is later by a second adds to each value

@@ -15,6 +15,7 @@ constexpr double TRUSTED = 0.1;  // half width over stiffness
 constexpr double TOLD = 0.01;    // the same, by what was told of the element alone: a tenth of that
 constexpr double NORMAL = 1.96;
 constexpr double UNMODELLED = 0.07;  // of a learnt compliance: what the model leaves where no sensor has noise
+constexpr double MOST_HELD = 0.999;  // of a compliance, by what was expected of it: beyond, nothing was learnt
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
 
@@ -46,7 +47,9 @@ void FootTracker::publish(int axis) noexcept {
   out.slip_torque =
       has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
-  learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
+  // A slide that is softer than anyone expects is held back by that expectation, whose deviation says nothing of it.
+  const double held = std::clamp(found.held, 0.0, MOST_HELD);
+  learnt_compliance_[axis] = parameter(COMPLIANCE, found.value[COMPLIANCE] * held / (1.0 - held));
   publish_compliance();
   const bool sure =
       found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
