@@ -10,6 +10,8 @@ import pytest
 
 from biped import TRUTH, VERTICAL, record, sway, times
 from biped_robot import write_robot
+from feet_trials import noisy
+from plantar.conventions import GRAVITY
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
@@ -199,3 +201,18 @@ def test_a_foot_zeroed_under_load_stands_always(robot: RobotModel) -> None:
     replay = replayed(replace(robot, feet=feet), log)
     assert (replay.column("left", "contact")[1:] == Contact.STANCE).all()
     assert replay.estimate("left").pitch.identified
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_a_slide_that_is_softer_than_expected_is_as_unsure_as_it_was_drawn_back(
+    robot: RobotModel, seed: int
+) -> None:
+    """Sensors with noise show it badly, and it lies four deviations from what was expected of it."""
+    expected = 0.003 / (robot.mass * GRAVITY)
+    assert expected * VERTICAL < 0.25
+    replay = replayed(robot, noisy(record(sway(duration=60.0)), seed))
+    for foot in ("left", "right"):
+        found = replay.estimate(foot).compliance
+        assert found is not None
+        assert found.value < 0.8 / VERTICAL
+        assert abs(found.value - 1 / VERTICAL) < found.half_width
