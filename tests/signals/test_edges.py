@@ -190,7 +190,7 @@ def test_thinning_halves_a_tone_at_eight_tenths_of_what_is_kept() -> None:
     log = thinned(log_of(np.sin(2 * np.pi * 80.0 * 1e-3 * np.arange(4000)), 1e-3))
     middle = log.column("imu.chest.angular_velocity.x")[200:600]
     assert np.sqrt(2) * np.std(middle) == pytest.approx(0.5, rel=0.02)
-    text = "log: 1000 Hz; every 5th sample of the filtered signals is used (200 Hz)"
+    text = "log: 1000 Hz; one in 5 samples of the filtered signals is used (200 Hz)"
     assert log.notes[-1].text == text
 
 

@@ -42,7 +42,7 @@ def test_slow_motions_keep_size_and_time(rate: float) -> None:
     (note,) = thin.notes
     assert note.code == "thinned"
     every = round(thin.period * rate)
-    assert f"{rate:.4g} Hz; every {every}th sample" in note.text
+    assert f"{rate:.4g} Hz; one in {every} samples" in note.text
     assert f"({rate / every:.4g} Hz)" in note.text
 
 

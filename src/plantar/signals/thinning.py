@@ -58,7 +58,7 @@ def thinned(log: MotionLog) -> MotionLog:
         return log
     rate = 1 / (log.period * step)
     columns = slow_columns(with_continuous_quaternions(log), log.period, BAND * rate / 2, step)
-    text = f"{log.name}: {1 / log.period:.4g} Hz; every {step}th sample of the filtered signals is used ({rate:.4g} Hz)"
+    text = f"{log.name}: {1 / log.period:.4g} Hz; one in {step} samples of the filtered signals is used ({rate:.4g} Hz)"
     note = Note("thinned", "info", text)
     return MotionLog(log.name, log.time[::step], columns, log.path, log.sha256, (*log.notes, note))
 

@@ -54,8 +54,8 @@ def test_a_place_s_words() -> None:
     place = np.array([-0.0125, 0.0214, 0.05, 0.0, 0.03, 0.0])
     (note,) = place_notes(FIT, place, np.array([1e-3, 2e-3, 1e-3, 1e-3, 2e-3, 1e-3]), NONE)
     assert note.text == (
-        "left roll: the torques turn about a point 12 ± 2 mm to the side of feet.left.bush and feet.left.wrench; "
-        "about a point 21 ± 4 mm above feet.left.bush and feet.left.wrench; "
+        "left roll: the torques turn about a point 12.5 ± 2.0 mm to the side of feet.left.bush and feet.left.wrench; "
+        "about a point 21.4 ± 3.9 mm above feet.left.bush and feet.left.wrench; "
         "about an axis 2.9 ± 0.1 deg beside feet.left.wrench.rpy or imu.rpy; "
         "as if the IMU were turned by 1.7 ± 0.2 deg about its y axis, beside imu.rpy (95 %): corrected; "
         "check the robot file"

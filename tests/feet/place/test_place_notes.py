@@ -30,8 +30,8 @@ FIT = AxisFit(
 @pytest.mark.parametrize(
     ("row", "value", "said"),
     [
-        (0, 0.02, "20 ± 2 mm forward or backward"),
-        (1, -0.02, "20 ± 2 mm below"),
+        (0, 0.02, "20.0 ± 2.0 mm forward or backward"),
+        (1, -0.02, "20.0 ± 2.0 mm below"),
         (2, 0.05, "2.9 ± 0.1 deg beside feet.left.wrench.rpy"),
         (4, 0.05, "2.9 ± 0.1 deg about its y axis"),
     ],

@@ -33,10 +33,10 @@ def place_notes(fit: AxisFit, place: Array, std: Array, prior: Array) -> list[No
     told, key = [], f"feet.{fit.foot}"
     if aside:
         where = "forward or backward" if fit.axis == "pitch" else "to the side"
-        told.append(f"about a point {abs(x):.0f} ± {of_x:.0f} mm {where} of {key}.bush and {key}.wrench")
+        told.append(f"about a point {abs(x):.1f} ± {of_x:.1f} mm {where} of {key}.bush and {key}.wrench")
     if above:
         where = "above" if z > 0 else "below"
-        told.append(f"about a point {abs(z):.0f} ± {of_z:.0f} mm {where} {key}.bush and {key}.wrench")
+        told.append(f"about a point {abs(z):.1f} ± {of_z:.1f} mm {where} {key}.bush and {key}.wrench")
     if turned:
         beside = f"{degrees[2]:.1f} ± {of[2]:.1f} deg beside {key}.wrench.rpy or imu.rpy"
         told.append(f"about an axis {beside}")
