@@ -39,8 +39,8 @@ class _Scale(NamedTuple):
 def torque_unit(robot: RobotModel, log: MotionLog, moment_arms: Array) -> Iterator[Finding]:
     """A fatal finding where the torques of all feet, or of one, follow the other moments at another scale.
 
-    Without an accelerometer nothing else would tell: another unit looks like other rubber. moment_arms (n, feet, 6, 3)
-    [m], as in `StanceSides`.
+    Without an accelerometer, where soles do not stand still either, nothing else would tell: another unit looks like
+    other rubber. moment_arms (n, feet, 6, 3) [m], as in `StanceSides`.
     """
     if log.duration < SHORTEST:
         return

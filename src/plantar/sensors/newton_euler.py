@@ -183,12 +183,12 @@ def _along(
         return None
     calm = found.calm
     start, stop, _ = calm.indices(len(range(*kept.indices(count))))
-    told = slice(kept.start + start * stride, kept.start + stop * stride, stride)
+    rows = slice(kept.start + start * stride, kept.start + stop * stride, stride)
     errors = equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot))
     turns = drawn_imu_turns(robot)
     if signals.by_turn is not None and len(turns):
         # What an accelerometer reads as it turns stays nearly as it is; what soles say of it does not.
-        turned = np.tensordot(turns, imu_turn_slopes(robot, equation, signals, told, parameters), 1)
+        turned = np.tensordot(turns, imu_turn_slopes(robot, equation, signals, rows, parameters), 1)
         errors = turned + errors if len(errors) else turned
     pair = replace(found.pair, model_errors=errors)
     return NewtonEulerResidual(
@@ -198,7 +198,7 @@ def _along(
         by_encoders[calm],
         loads.readings[calm],
         signals,
-        told,
+        rows,
         parameters,
         loads.changes[calm],
         not below.parameters.any() and not below.zeros.any(),

@@ -27,7 +27,7 @@ from plantar.signals.resampling import shifted
 
 # Steps: each leaves a tenth of the one before; changing between common and own delays takes some more.
 ROUNDS = 6
-# Of these: what one of the later steps cannot tell stays untold, or steps go back and forth between two answers.
+# The step from which on what one cannot tell stays untold: else they go back and forth between two answers.
 WAVERING = 3
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own

@@ -202,6 +202,7 @@ def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
 
 
 def _delays(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
+    """The same without these logs."""
     feet, encoders = found.values[:-1], float(found.values[-1])
     value, beside = float(np.mean(feet)), found.encoders_unsure
     if found.unsteady is not None:
