@@ -52,7 +52,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "estimation/errors_in_variables.py", "all that stances leave is slow",
-        "along = solution.squares - sum(", "along = solution.squares - 0.0 * sum(",
+        "along = squares - sum(", "along = squares - 0.0 * sum(",
         ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(
