@@ -117,9 +117,8 @@ def slow_attenuation(blocks: Sequence[Block], slope: float, *, shared_offset: bo
     """
     size = blocks[0].regressor.shape[1]
     if blocks[0].stances is None or shared_offset:
-        found, inverse = (
-            each(blocks, shared_offset=shared_offset) for each in (fit_blocks, information_inverse)
-        )
+        inverse = information_inverse(blocks, shared_offset=shared_offset)
+        found = fit_blocks(blocks, shared_offset=shared_offset)
         squares, left = found.squares, [found.residuals[block.label] for block in blocks]
     else:
         solution = StanceProblem.drawn_together(blocks).solve()
