@@ -332,7 +332,7 @@ def test_a_cube_is_suspected_from_two_deviations_on(
     found = SimpleNamespace(
         values=np.append(fit.values + [8.0, 1.0], 500.0 * deviations),
         std=np.array([1.0, 1.0, 500.0]),
-        condition_number=10.0,
+        singular=False,
     )
     monkeypatch.setattr(systematic, "fit_blocks", lambda *_, **__: found)
     causes = _suspected_hardening(fit, blocks_of(recordings, FOOT, "pitch", fit=fit), False)

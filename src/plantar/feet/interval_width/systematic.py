@@ -14,7 +14,7 @@ from plantar.estimation.errors_in_variables import slow_attenuation
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, has_memory, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
-from plantar.feet.interval_width.cause import SINGULAR, Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.interval_width.yaw_zero import yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
@@ -204,7 +204,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
         wider = beside(replace(block, noise=None), cube[:, None])
         extended.append(wider.with_nuisance((square - square.mean())[:, None]))
     found = fit_blocks(extended, shared_offset=shared)
-    if found.condition_number > SINGULAR:
+    if found.singular:
         return []
     hardening, std = float(found.values[size]), float(found.std[size])
     known = bool(found.std[0] < KNOWN * abs(fit.values[0]))
