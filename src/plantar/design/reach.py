@@ -46,11 +46,18 @@ class Reach:
     roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate`, at `firm_time` (M,) [s],
     where rubber that slips stands beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and
     `wrench_rates` (size, 3, N), of the vertical force [N/s] and of the moments about x and y [N·m/s].
-    Limits hold for the plain springs, with what slips added to their torques; intervals come from the others.
+    Limits hold for the plain springs, with what slips added to their torques; intervals come from the others. `element`:
+    stiffness (2,) of what slips beside pitch and roll, where that is known [N·m/rad].
     """
 
     def __init__(
-        self, legs: Legs, robot: LinearRobot, lines: Lines, told: Softness, bushes: Sequence[Softness]
+        self,
+        legs: Legs,
+        robot: LinearRobot,
+        lines: Lines,
+        told: Softness,
+        bushes: Sequence[Softness],
+        element: Array | None = None,
     ) -> None:
         self.lines, self.time, self.bushes, self.feet = (
             lines,
@@ -71,7 +78,7 @@ class Reach:
         }
         # Of what slips beside every spring, by axis: at least the rubber of the rehearsals, which goes with the weight.
         rubber = np.array(preset_named(DEFAULT).slip_torques(legs.body.robot)) / SLIP_ANGLE
-        self.element = np.maximum(told.stiffness * np.array(SHARE), rubber)
+        self.element = np.maximum(told.stiffness * np.array(SHARE) if element is None else element, rubber)
 
         def parts(beside: Array, *names: str) -> list[Array]:
             pitch, roll = (float(value) for value in beside)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -84,7 +85,12 @@ class Design:
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
     pairs: int
 
-    def trajectory(self, share: float = 1.0) -> Trajectory:
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """The motion."""
+        return self.gentler(1.0)
+
+    def gentler(self, share: float) -> Trajectory:
         """The motion with a share of its amplitude."""
         return Trajectory.of("design", self.legs, self.lines, share * self.coefficients)
 
@@ -135,17 +141,18 @@ def design_motion(
     told = Softness.told(robot, stiffness, damping)
     bushes = [told.times(factor) for factor in _rehearsed_at(*factors)]
     before = 0.0 if known is None else known.precision(tuple(legs.bushes))
+    element = None if known is None else known.element
     left = np.full((len(bushes), len(KINDS)), LEFT)
 
     def reach_of(legs: Legs, linear: LinearRobot) -> Callable[[Lines], Reach]:
-        return lambda lines: Reach(legs, linear, lines, told, bushes).held(left)
+        return lambda lines: Reach(legs, linear, lines, told, bushes, element).held(left)
 
     place, lines, found = best_motion(
         [reach_of(*each) for each in stances], settings.duration, settings.criterion, settings.seed, before, progress
     )  # fmt: skip
     legs, linear = stances[place]
     motion = Attempt(
-        Reach(legs, linear, lines, told, bushes),
+        Reach(legs, linear, lines, told, bushes, element),
         lambda limits, start: better_motion(limits, settings.criterion, start, before),
         found,
         _rehearsed_at(*factors),
