@@ -51,7 +51,11 @@ class Known:
             if row.verdict == "usable":
                 own[terms.index(row.name)] = (high - low) / 2 / NORMAL95
             if row.name == terms[0]:
-                ends = (low, high) if row.verdict == "usable" else _spring_alone(row, result, element)
+                ends = (
+                    (low, high)
+                    if row.verdict == "usable"
+                    else _spring_alone(row, (low, high), result, element)
+                )
                 reaches += [end for end in ends if end > 0]
         found = {term: of["usable"] or of["weak"] for term, of in values.items()}
         if not all(found.values()):
@@ -61,6 +65,11 @@ class Known:
         low, high = min(*reaches, stiffness) / WIDER, max(*reaches, stiffness) * WIDER
         return cls(stiffness, damping, low, high, deviations, element)
 
+    @property
+    def sure(self) -> list[tuple[str, str]]:
+        """The (foot, axis) of which stiffness and damping are usable."""
+        return [place for place, own in self.deviations.items() if np.isfinite(own).all()]
+
     def precision(self, feet: tuple[str, ...]) -> Array:
         """Information (feet, 2, 2, 2) on stiffness and damping of each foot and axis."""
         unknown = np.full(2, np.inf)
@@ -68,38 +77,42 @@ class Known:
         return np.asarray(np.einsum("fai,ij->faij", np.array(own) ** -2.0, np.eye(2)))
 
 
-def _spring_alone(row: Parameter, result: FeetResult, element: Array | None) -> tuple[float, float]:
-    """Between what the spring lies of a weak stiffness [N·m/rad].
+def _spring_alone(
+    row: Parameter, interval: tuple[float, float], result: FeetResult, element: Array | None
+) -> tuple[float, float]:
+    """Between what the spring lies of a weak stiffness, by its 95 % `interval` [N·m/rad].
 
     An element that was not made to slip counts as stiffness: what was found is the sum of both, as sure as the sensors
     are, and the interval, as wide upwards as downwards, says how much of it may be the element's.
     """
-    assert row.value is not None and row.interval95 is not None, "asked for where they are known"
-    low, high = row.interval95
     shares = (
         each.variance_shares.get(HIDDEN, 0.0)
         for each in result.diagnosis
         if (each.foot, each.axis, each.name) == (row.foot, row.axis, row.name)
     )
-    hidden = next(shares, 0.0)
+    hidden, (low, high) = next(shares, 0.0), interval
     if element is None or not hidden > 0:
         return SPRING * low, high
     sure = (high - low) / 2 * np.sqrt(max(1.0 - hidden, 0.0))
-    return low, float(row.value + sure - element[ROTATIONAL_AXES.index(row.axis)])
+    return low, float((row.value or 0.0) + sure - element[ROTATIONAL_AXES.index(row.axis)])
 
 
 def _elements(result: FeetResult) -> Array | None:
     """Stiffness (2,) until they slip of the elements of pitch and roll [N·m/rad], means of all feet; an axis that shows
     none has one in proportion to the other's."""
     values = {
-        (row.foot, row.axis, row.name): row.value for row in result.parameters if row.verdict != "unidentifiable"
+        (row.foot, row.axis, row.name): row.value
+        for row in result.parameters
+        if row.verdict != "unidentifiable"
     }
     slopes = np.full(len(ROTATIONAL_AXES), np.nan)
     for place, axis in enumerate(ROTATIONAL_AXES):
         found = [
             torque / angle
             for (foot, own, name), torque in values.items()
-            if (own, name) == (axis, "slip_torque") and torque and (angle := values.get((foot, axis, "slip_angle")))
+            if (own, name) == (axis, "slip_torque")
+            and torque
+            and (angle := values.get((foot, axis, "slip_angle")))
         ]
         slopes[place] = np.mean(found) if found else np.nan
     if np.isnan(slopes).all():

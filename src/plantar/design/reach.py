@@ -46,8 +46,8 @@ class Reach:
     roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate`, at `firm_time` (M,) [s],
     where rubber that slips stands beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and
     `wrench_rates` (size, 3, N), of the vertical force [N/s] and of the moments about x and y [N·m/s].
-    Limits hold for the plain springs, with what slips added to their torques; intervals come from the others. `element`:
-    stiffness (2,) of what slips beside pitch and roll, where that is known [N·m/rad].
+    Limits hold for the plain springs, with what slips added to their torques; intervals come from the others.
+    `element`: stiffness (2,) of what slips beside pitch and roll, where that is known [N·m/rad].
     """
 
     def __init__(

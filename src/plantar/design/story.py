@@ -71,7 +71,8 @@ class Design:
     """A motion and what it promises.
 
     `told`: the bush it was made for; `factors`: the range of stiffness it holds for; `rehearsals`: by factor, the told
-    stiffness among them; `pairs` of links that were watched for touching, 0 where the URDF brings no geometry.
+    stiffness among them; `pairs` of links that were watched for touching, 0 where the URDF brings no geometry; `known`:
+    what an earlier result knows.
     """
 
     settings: DesignSettings
@@ -84,6 +85,7 @@ class Design:
     coefficients: Array = field(repr=False)
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
     pairs: int
+    known: Known | None = None
 
     @cached_property
     def trajectory(self) -> Trajectory:
@@ -158,7 +160,9 @@ def design_motion(
         _rehearsed_at(*factors),
     )
     coefficients, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
-    return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
+    return Design(
+        settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs, known
+    )
 
 
 def _stances(robot: RobotModel) -> list[tuple[Legs, LinearRobot]]:
