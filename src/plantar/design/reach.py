@@ -150,10 +150,17 @@ class Reach:
 
     def used_by_kind(self, coefficients: Array) -> Array:
         """How much of its tightest limit of each kind over each bush a motion takes up, (S, KINDS)."""
+        return self._used_by_group(coefficients)[:-1].reshape(-1, len(KINDS))
+
+    def used_over_none(self, coefficients: Array) -> float:
+        """How much of the tightest limit over no bush, of channels and joints, a motion takes up."""
+        return float(self._used_by_group(coefficients)[-1])
+
+    def _used_by_group(self, coefficients: Array) -> Array:
         found = np.zeros(len(self.bushes) * len(KINDS) + 1)
         for side in self._shares(coefficients):
             np.maximum.at(found, self._group, side.max(axis=1))
-        return found[:-1].reshape(-1, len(KINDS))
+        return found
 
     def _joints(self, legs: Legs, robot: LinearRobot) -> list[tuple[Array, Array, Array]]:
         """How far each joint goes and how fast, about standing, and how far and fast it may."""

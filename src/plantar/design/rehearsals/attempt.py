@@ -66,8 +66,8 @@ class Attempt:
         self.coefficients, self.rehearsals = self.better(within, self.coefficients), {}
 
     def shrink(self) -> None:
-        """Smaller in all."""
-        self.shares, self.others = SMALLER * self.shares, SMALLER * self.others
+        """Joints that move less: what legs do not reach and links that touch are no matter of what soles hold."""
+        self.others = SMALLER * min(self.others, self.reach.used_over_none(self.coefficients))
         self.search_on()
 
     def lower_arms(self) -> bool:
