@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -83,14 +82,10 @@ class Design:
     legs: Legs = field(repr=False)
     lines: Lines = field(repr=False)
     coefficients: Array = field(repr=False)
+    trajectory: Trajectory = field(repr=False)
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
     pairs: int
     known: Known | None = None
-
-    @cached_property
-    def trajectory(self) -> Trajectory:
-        """The motion."""
-        return self.gentler(1.0)
 
     def gentler(self, share: float) -> Trajectory:
         """The motion with a share of its amplitude."""
@@ -159,9 +154,20 @@ def design_motion(
         found,
         _rehearsed_at(*factors),
     )
-    coefficients, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
+    coefficients, trajectory, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
     return Design(
-        settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs, known
+        settings,
+        robot,
+        told,
+        factors,
+        least,
+        legs,
+        lines,
+        coefficients,
+        trajectory,
+        tuple(rehearsals),
+        pairs,
+        known,
     )
 
 
