@@ -17,7 +17,8 @@ from plantar.twin.robots import hrp2
 # Of a motion, all that is looked at: what it was made for. Nothing was searched or played.
 UNPLAYED = Design(
     settings=DesignSettings(design_samples.STIFFNESS), robot=hrp2.robot(), told=design_samples.told(),
-    factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None, coefficients=np.zeros(0), trajectory=None, rehearsals=(), pairs=0,
+    factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None,
+    coefficients=np.zeros(0), trajectory=None, rehearsals=(), pairs=0,
 )  # fmt: skip
 
 
