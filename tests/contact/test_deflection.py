@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.spatial.transform import Rotation
 
 import example_robots
 from plantar import _core
-from plantar.contact.deflection import BushState, bush_states, foot_motions
+from plantar.contact.deflection import BushState, bush_states, foot_motions, onto_sole
 from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
@@ -305,3 +306,13 @@ def test_bad_arrays_and_a_robot_without_imu_are_named() -> None:
     blind = RobotModel("robot", model.path, model.path, model.urdf, "floating", None, model.feet, {}, {}, {})
     with pytest.raises(RobotError, match="imu"):
         states(blind, moved, wrenches)
+
+
+def test_a_vector_seen_from_the_deflected_sole() -> None:
+    random = np.random.default_rng(4)
+    vector, pitch, roll = random.normal(size=(50, 3)), *random.uniform(-0.5, 0.5, (2, 50))
+    turned = pin.utils.rotate("y", pitch[7]) @ pin.utils.rotate("x", roll[7])
+    found = onto_sole(vector, pitch, roll)
+    np.testing.assert_allclose(found[7], turned.T @ vector[7], atol=1e-15)
+    back = Rotation.from_euler("YX", np.column_stack([pitch, roll])).apply(found)
+    np.testing.assert_allclose(back, vector, atol=1e-14)
