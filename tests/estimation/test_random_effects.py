@@ -99,3 +99,10 @@ def test_one_group_beside_the_weighted_mean_of_the_others() -> None:
         assert odd.share == pytest.approx(0.150 - np.average(shares[others], weights=weight), rel=1e-9)
         assert odd.std == pytest.approx(np.sqrt(1 / weight.sum() + own[3] + odd.apart**2), rel=1e-9)
     assert furthest(Differences(shares[1:] - shares[0], np.diag(own[1:]) + own[0]), 0.2, 3.0) is None
+    odd = furthest(Differences(shares[1:] - shares[0], np.diag(own[1:]) + own[0]), 0.0, 3.0)
+    assert odd is not None
+    for sure, told in ((0.99, True), (1.01, False)):
+        again = furthest(
+            Differences(shares[1:] - shares[0], np.diag(own[1:]) + own[0]), 0.0, sure * odd.share / odd.std
+        )
+        assert (again is not None) == told

@@ -1,4 +1,4 @@
-"""The survey of a table's text and its pieces, against the text itself: whatever the blocks, nothing is lost or held."""
+"""The survey of a text table and its pieces, against the text itself: whatever the blocks, nothing is lost or held."""
 
 from __future__ import annotations
 
