@@ -224,6 +224,30 @@ void noise_of_forces_moves_nothing() {
   check::near(mean, 800.0, 3.0, "stiffness beside a force with noise, which alone would take 11 off");
 }
 
+// The same noise in a force that goes with no motion: by the sensor's arm it would move the bush's place by 4 mm.
+void noise_of_forces_moves_no_place(Unknown column, NoiseSource of_force) {
+  double place = 0.0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    RegressionPrior known = prior();
+    known.spread[column] = 0.1;
+    (of_force == OF_LOAD ? known.load_arm : known.horizontal_arm) = 0.05;
+    AxisRegression axis(known);
+    Source source(seed);
+    for (int i = 0; i < 4000; ++i) {
+      const double t = ROW * i, noise = 2.0 * source.normal(source.random), force = 10.0 * std::sin(3.1 * t);
+      RegressionRow row = source.row(t, 800.0, 0.0, 0.0);
+      row.torque += 0.003 * force + 0.05 * noise;
+      row.columns[column] = force + noise;
+      row.noise[of_force] = 4.0;
+      axis.add(row, ROW);
+      axis.work();
+    }
+    for (int i = 0; i < 4; ++i) axis.work();
+    place += axis.values().value[column] / 10;
+  }
+  check::near(place, 0.003, 4e-4, "place of the bush beside a force with noise");
+}
+
 // Under a load that changes, and when most of what was learnt has been forgotten again, a weak force's noise is still
 // taken off as much as it is there.
 void noise_under_changing_loads_moves_nothing(double seconds, const char* what) {
@@ -316,6 +340,8 @@ void run() {
   a_block_that_moves_the_value_widens_it();
   what_differs_between_blocks_moves_nothing();
   noise_of_forces_moves_nothing();
+  noise_of_forces_moves_no_place(ABOVE, OF_HORIZONTAL);
+  noise_of_forces_moves_no_place(ASIDE, OF_LOAD);
   noise_under_changing_loads_moves_nothing(80.0, "beside noise under a changing load");
   noise_under_changing_loads_moves_nothing(600.0, "the same, when older data have faded");
   the_compliance_is_learnt();
