@@ -79,7 +79,9 @@ def test_a_diagnosis_has_its_shares_in_percent(tmp_path: Path, capsys: pytest.Ca
     assert run("diagnose", result.save(tmp_path)) == 0
     text = capsys.readouterr().out
     assert "left  pitch  damping" in text
-    assert " 2  delay       delay 74 %, noise 25 %, place 1 %\n" in text, "what makes next to nothing is left out"
+    assert " 2  delay       delay 74 %, noise 25 %, place 1 %\n" in text, (
+        "what makes next to nothing is left out"
+    )
     assert "Against delay: measure it." in text
 
 

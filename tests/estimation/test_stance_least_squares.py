@@ -298,7 +298,9 @@ def test_what_was_known_of_a_coefficient_draws_it_to_zero() -> None:
 
 def test_halves_are_fitted_each_alone() -> None:
     """Of five stances the first two and the last three, by number and not by row."""
-    block = replace(walk(3, stances=5), nuisance=orthonormal(np.random.default_rng(0).normal(size=(5 * ROWS, 1))))
+    block = replace(
+        walk(3, stances=5), nuisance=orthonormal(np.random.default_rng(0).normal(size=(5 * ROWS, 1)))
+    )
     order = np.random.default_rng(1).permutation(5 * ROWS)
     shuffled = block.part(order)
     np.testing.assert_array_equal(shuffled.response, block.response[order])
