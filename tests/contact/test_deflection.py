@@ -293,6 +293,12 @@ def test_large_and_missing_angles_keep_their_meaning() -> None:
     assert np.isnan(after[9]).all()
     keep = np.arange(16) != 9
     np.testing.assert_allclose(after[keep], before[keep], atol=1e-8)
+    far = moved["positions"] + 10.0 ** np.linspace(0, 9, 16)[:, None]
+    near = np.arctan2(np.sin(far), np.cos(far))
+    after, before = (
+        states(model, {**moved, "positions": turned}, none)["left"].deflection for turned in (far, near)
+    )
+    np.testing.assert_allclose(after, before, atol=1e-12, err_msg="as good as their sines and cosines")
 
 
 def test_bad_arrays_and_a_robot_without_imu_are_named() -> None:
