@@ -47,6 +47,12 @@ class FittedFoot:
     thin: PreparedLogs
     jumps: Sequence[Note]
 
+    def told(self, note: Note) -> FittedFoot:
+        """The foot with a note more on each axis."""
+        return replace(
+            self, fits={axis: replace(fit, notes=(*fit.notes, note)) for axis, fit in self.fits.items()}
+        )
+
 
 def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
     """Pitch and roll of one foot, and the logs without the samples that leave either model by far.

@@ -11,6 +11,7 @@ from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
 from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
 from plantar.feet.place.spread import PlaceSpread
+from plantar.feet.place.told_exact import as_measured, shown_elsewhere
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.put_right.encoders_of_fits import (
     Late,
@@ -27,6 +28,7 @@ from plantar.feet.shared_hysteresis import with_shared_hysteresis
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.logs.stretches import LONGEST
+from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -147,13 +149,20 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
         found = over_cores(fit_foot, [ready] * len(places), places, places.values())
         return dict(zip(places, found, strict=True))
 
-    found = fit_all(places)
+    found, exact = fit_all(places), dict[str, Note]()
+    for foot, place in places.items():
+        own, usual, shared = found[foot], as_measured(ready.robot, foot), ready.settings.offset == "shared"
+        note = shown_elsewhere([*own.fits.values()], own.thin.fitted, place, usual, shared)
+        if note is not None:
+            places[foot], exact[foot] = usual, note
+    found |= fit_all({foot: places[foot] for foot in exact})
     fits = {foot: [*one.fits.values()] for foot, one in found.items()}
     wider = {
         foot: place.doubted_by([fit for other in fits if other != foot for fit in fits[other]], fits[foot])
         for foot, place in places.items()
     }
-    return found | fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
+    found |= fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
+    return {foot: one.told(exact[foot]) if foot in exact else one for foot, one in found.items()}
 
 
 def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> PreparedLogs:
