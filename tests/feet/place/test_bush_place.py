@@ -64,35 +64,6 @@ def test_a_centre_at_another_height_is_found(
     assert worst(found) < 0.02
 
 
-@pytest.mark.parametrize("away", [(0.0, 0.0, 0.04), (0.03, 0.0, 0.0), (0.0, 0.0, 0.01)])
-def test_a_place_that_is_told_as_exact_gives_way_to_what_motions_show(
-    robot: RobotModel, measured: RobotModel, recorded: list[MotionLog], away: tuple[float, float, float]
-) -> None:
-    sure = replace(measured, uncertainty=Uncertainty(bush_position=0.0))
-    surer = replace(measured, uncertainty=Uncertainty(bush_position=0.0002, wrench_crosstalk=0.0))
-    logs = [shifted(log, np.array(away)) for log in recorded]
-    for told in (robot, sure, surer):
-        found = identify_feet(told, logs, settings=LINEAR)
-        assert worst(found) < 0.01
-        assert all(np.hypot(*model.moment_arms) > 0.005 for model in found.models if model.axis == "pitch")
-    texts = [note.text for note in found.notes if note.code == "bush_place" and "`uncertainty`" in note.text]
-    assert {text.split()[0] for text in texts} == {"left", "right"}
-    assert all("known to 0.2 mm: taken as known to 5 mm" in text for text in texts)
-    assert "bush_place" not in codes(identify_feet(sure, recorded, settings=LINEAR))
-
-
-def test_what_is_told_as_exact_and_shown_elsewhere_is_told_of_the_foot_alone_of_which_it_is_so(
-    robot: RobotModel, recorded: list[MotionLog]
-) -> None:
-    logs = [log.with_columns({name: values for name, values in shifted(log, np.array([0.0, 0.0, 0.02])).columns.items()
-                              if name.startswith("wrench.right")}) for log in recorded]  # fmt: skip
-    found = identify_feet(robot, logs, settings=LINEAR)
-    texts = [note.text for note in found.notes if note.code == "bush_place"]
-    assert texts
-    assert all(text.startswith("right") for text in texts)
-    assert all(np.hypot(*model.moment_arms) < 0.003 for model in found.models if model.foot == "left")
-
-
 def placed(axis: Axis, height: float, *codes: str) -> AxisFit:
     """A fit of which only the height of the bush's centre and the notes matter."""
     fit = Mock(spec=AxisFit)

@@ -48,13 +48,13 @@ def shown_elsewhere(
             continue  # it steps: its stances have shown the place already
         arms, std = np.array(moved.moment_arms), np.array(moved.place_std[:2])
         if (np.abs(arms) > np.maximum(CLEAR * np.hypot(std, told.aside), WORTH_SAYING)).any():
-            return Note(PLACE, "warning", _text(fit, 1e3 * float(np.abs(arms).max()), told, usual))
+            return Note(PLACE, "warning", _text(fit, told, usual))
     return None
 
 
-def _text(fit: AxisFit, away: float, told: PlaceSpread, usual: PlaceSpread) -> str:
+def _text(fit: AxisFit, told: PlaceSpread, usual: PlaceSpread) -> str:
     return (
-        f"{fit.foot} {fit.axis}: the torques turn about a point {away:.0f} mm beside feet.{fit.foot}.bush and "
+        f"{fit.foot} {fit.axis}: the torques turn about another point than feet.{fit.foot}.bush and "
         f"feet.{fit.foot}.wrench, which `uncertainty` says are known to {1e3 * told.aside:.2g} mm: taken as known to "
         f"{1e3 * usual.aside:.2g} mm; check the robot file"
     )
