@@ -38,8 +38,8 @@ NEAR = 0.1  # s before and behind the edge, in which the excess is that of a fla
 SMEAR = 0.02  # s that this filter spreads a lean
 FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
 VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
-# m, times the weight: the torque's zero; a sensor that is farther off is told to be zeroed. That of a small foot is made
-# for smaller torques: a share of half the sole's width, or the middle of the sole would count as its edge.
+# m, times the weight: the torque's zero; a sensor that is farther off is told to be zeroed. A small foot's is made for
+# smaller torques: a share of half the sole's width, or the middle of the sole would count as its edge.
 LARGEST_ZERO, ZERO_SHARE = TORQUE_OFF, 0.125
 FEWEST = 0.04  # s of sure lean, for the edge to be known
 # By how much an outline that is a guess may be too large [m, and of half the sole's width]: a sole tips before it seems
