@@ -102,6 +102,7 @@ def _check(root: ET.Element, path: Path) -> None:
             raise RobotError("is xacro that was not expanded", path=path, valid=valid)
     if root.tag != "robot":
         raise RobotError(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>")
+    _check_tree(root, path)
     for owner, element, key, count in _numbers(root):
         text = element.get(key)
         if text is not None and not _are_numbers(text, count):
@@ -119,6 +120,34 @@ def _check(root: ET.Element, path: Path) -> None:
         if element.tag == "mass" and float(text or 0) < 0:
             where = f"the mass of link '{owner.get('name')}' is negative"
             raise RobotError(where, path=path, value=text, valid="kg, 0 or more")
+
+
+def _check_tree(root: ET.Element, path: Path) -> None:
+    """Refuse what its parser would print to the terminal, and say no more of than that it cannot be read."""
+    names = {kind: [str(one.get("name")) for one in root.findall(kind)] for kind in ("link", "joint")}
+    for kind, known in names.items():
+        if twice := [name for name in known if known.count(name) > 1]:
+            raise RobotError(f"{kind} '{twice[0]}' is there twice", path=path, valid="names of their own")
+    carried: dict[str, str] = {}
+    for joint in root.findall("joint"):
+        name, ends = str(joint.get("name")), [joint.find(end) for end in ("parent", "child")]
+        for end, found in zip(("parent", "child"), ends, strict=True):
+            link = None if found is None else found.get("link")
+            if link not in names["link"]:
+                valid = "the name of a link of the URDF"
+                raise RobotError(f"joint '{name}' has the {end} '{link}'", path=path, valid=valid)
+        child = str(ends[1].get("link") if ends[1] is not None else "")
+        if child in carried:
+            text = f"link '{child}' hangs on two joints, '{carried[child]}' and '{name}'"
+            raise RobotError(text, path=path, valid="a tree; a loop is cut open")
+        carried[child] = name
+        if joint.get("type") in ("revolute", "prismatic") and joint.find("limit") is None:
+            valid = "<limit lower=... upper=... effort=... velocity=...>, or type continuous"
+            raise RobotError(f"{joint.get('type')} joint '{name}' has no limits", path=path, valid=valid)
+    roots = [name for name in names["link"] if name not in carried]
+    if len(roots) > 1:
+        text = f"its links do not hang together: '{roots[0]}' and '{roots[1]}' hang on no joint"
+        raise RobotError(text, path=path, valid="one root link")
 
 
 def _numbers(root: ET.Element) -> Iterator[tuple[ET.Element, ET.Element, str, int]]:

@@ -47,7 +47,7 @@ def test_the_sum_is_told_and_each_foot_is_as_unsure_as_feet_differ(
         assert found.compliance[foot] == 4e-6
         assert found.compliance_std[foot] == pytest.approx(0.5 * np.hypot(1e-7, unsure * 8e-6), rel=1e-3)
         assert row.verdict == verdict
-        assert ("though pitch or roll differ" in row.reason) == (share > 0)
+        assert ("pitch or roll of the feet differ" in row.reason) == (share > 0)
 
 
 def test_feet_that_were_told_apart_stay_as_they_were() -> None:
@@ -66,7 +66,6 @@ def test_a_foot_that_is_three_times_stiffer_makes_z_unsure(robot: RobotModel) ->
     alike, unlike = (identify_feet(robot, [one], settings=LINEAR) for one in (log, log.with_columns(moved)))
     for foot in FEET:
         one, other = (found.parameter(foot, "z", "stiffness") for found in (alike, unlike))
-        assert other.value == pytest.approx(one.value, rel=0.2)
-        assert other.interval95 is not None
-        assert one.interval95 is not None
-        assert np.ptp(1 / np.array(other.interval95)) > 2 * np.ptp(1 / np.array(one.interval95))
+        assert one.verdict == "weak"
+        assert (other.value, other.verdict) == (None, "unidentifiable")
+        assert other.reason == "only the sum of both compliances shows, and pitch or roll of the feet differ"

@@ -34,6 +34,8 @@ RELIABLE = 10.0  # times its noise's variance: that of a load from which a compl
 UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
 USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
 
+UNCLEAR = "the heights of the soles do not follow the load clearly"
+UNLIKE = "only the sum of both compliances shows, and pitch or roll of the feet differ"
 ADVICE = (
     "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
 )
@@ -189,8 +191,9 @@ def _both_stand(recording: Recording, feet: tuple[str, ...]) -> tuple[Mask, Arra
 def _row(foot: str, compliance: float, std: float, found: Compliances, gain: float) -> Parameter:
     """One foot's stiffness: from sum and difference where they separate, else with both feet alike."""
     low, high = interval95(compliance, std, found.freedom)
-    if compliance <= 0:
-        return _unknown_row(foot)
+    unlike = found.alike > ALIKE and not found.separable
+    if low <= 0 or compliance <= 0:
+        return _unknown_row(foot, UNLIKE if unlike else UNCLEAR)
     width = float(np.hypot((high - low) / 2 / compliance, gain))
     std = float(np.hypot(std, gain / NORMAL95 * compliance))
     value = 1 / compliance
@@ -203,8 +206,9 @@ def _row(foot: str, compliance: float, std: float, found: Compliances, gain: flo
     if not found.separable:
         advice = ADVICE_APART
         verdict = "weak" if verdict == "usable" else verdict
-        reason += "; only the sum of both compliances shows, both feet taken as equal"
-        reason += ", though pitch or roll differ" * (found.alike > ALIKE)
+        reason += (
+            f"; {UNLIKE}" if unlike else "; only the sum of both compliances shows, both feet taken as equal"
+        )
     white = relative_std_percent(found.total, float(found.white_std[0]))
     return Parameter(
         foot, "z", "stiffness", STIFFNESS_UNIT["z"], value, std * value**2, interval, white, verdict, reason,
@@ -212,7 +216,6 @@ def _row(foot: str, compliance: float, std: float, found: Compliances, gain: flo
     )  # fmt: skip
 
 
-def _unknown_row(foot: str) -> Parameter:
-    reason = "the heights of the soles do not follow the load clearly"
+def _unknown_row(foot: str, reason: str = UNCLEAR) -> Parameter:
     unit = STIFFNESS_UNIT["z"]
     return Parameter(foot, "z", "stiffness", unit, None, None, None, None, "unidentifiable", reason, ADVICE)
