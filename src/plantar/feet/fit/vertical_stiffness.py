@@ -41,7 +41,7 @@ ADVICE = (
 )
 ADVICE_APART = (
     "the total load must change to tell the feet apart: stand on both feet while somebody presses the robot down or "
-    "lifts it by 50 N or more, slowly and several times"
+    "lifts it by a tenth of its weight or more, slowly and several times"
 )
 
 
