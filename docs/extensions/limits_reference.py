@@ -21,6 +21,7 @@ import plantar
 SOURCE = Path(plantar.__file__).parent
 PAGE = Path(__file__).resolve().parents[1] / "reference" / "limits.md"
 ROOMS = {
+    "conventions": "Everywhere",
     "logs": "Reading logs",
     "robot": "Robot files",
     "robot_guess": "A first robot file",
@@ -87,7 +88,7 @@ def page() -> str:
     for room, title in ROOMS.items():
         rows = [
             f"| `{_place(file)}` | `{limit.name}` | `{limit.value}` | {_cell(limit.reason)} |"
-            for file in sorted((SOURCE / room).rglob("*.py"))
+            for file in sorted((SOURCE / room).rglob("*.py")) or [SOURCE / f"{room}.py"]
             for limit in limits_in(file.read_text())
         ]
         if rows:

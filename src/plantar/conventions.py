@@ -24,10 +24,12 @@ Axis = Literal["pitch", "roll", "z"]
 GRAVITY: Final = 9.80665  # m/s², standard gravity
 NORMAL95: Final = 1.96  # deviations that a 95 % interval of a normal value reaches
 UNIFORM: Final = 3**-0.5  # of its bounds: the deviation of what lies anywhere within (GUM, type B)
+SHOWN: Final = 3.0  # standard deviations from which what logs show is put right, or said
+SURE: Final = 5.0  # standard deviations from which what logs show is beyond doubt
 ROTATIONAL_AXES: Final[tuple[Axis, Axis]] = ("pitch", "roll")
 AXES: Final[tuple[Axis, Axis, Axis]] = ("pitch", "roll", "z")
 
-FORCE: Final = slice(0, 3)  # of a wrench
+FORCE: Final = slice(0, 3)
 TORQUE: Final = slice(3, 6)
 WRENCH_AXES: Final = ("force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z")
 

@@ -52,19 +52,19 @@ def page(name: str) -> str:
         ("intervals.md", f"({1e3 * spread.GUESSED:.0f} mm for a line marked GUESS)"),
         ("intervals.md", f"From {WORDS[stance_least_squares.FEWEST_RECORDINGS]} recordings on, refits"),
         ("intervals.md", f"cosines of {slow_drift.DRIFT_PERIOD:.0f} s and longer"),
-        ("intervals.md", f"From {100 * attitude_scale.SCALE_OFF:.0f} % on, and six deviations"),
-        ("intervals.md", f"certain at one sample ({slip_indicator.SURE:g} deviations)"),
+        ("put_right.md", f"From {100 * attitude_scale.SCALE_OFF:.0f} % on, and six deviations"),
+        ("left_out.md", f"certain at one sample ({slip_indicator.SURE:g} deviations)"),
         (
-            "intervals.md",
+            "left_out.md",
             f"possible ({slip_indicator.POSSIBLE:g} deviations and {1e3 * slip_indicator.LEAST_SPEED:g} mm/s), "
             f"covers {1e3 * slip_indicator.LEAST_PATH:g} mm, and friction above a twentieth",
         ),
-        ("intervals.md", f"turns on by {1e3 * moved_edges.LEAST_PLATEAU:g} mrad or more"),
+        ("left_out.md", f"turns on by {1e3 * moved_edges.LEAST_PLATEAU:g} mrad or more"),
         (
-            "intervals.md",
+            "left_out.md",
             f"changes above {phases.SHAKING_BAND:g} Hz by more than {100 * phases.SHAKING_SHARE:g} % of the weight",
         ),
-        ("intervals.md", f"{1e3 * edge_rolling.LEAST_LEAN:g} mrad for a lean"),
+        ("left_out.md", f"{1e3 * edge_rolling.LEAST_LEAN:g} mrad for a lean"),
         (
             "walking.md",
             f"has {WORDS[stances.FEWEST_STANCES]} stances or more that usually last less than "
@@ -106,7 +106,7 @@ def test_a_page_tells_the_limits_of_the_code(name: str, said: str) -> None:
 
 def test_what_pages_say_in_words() -> None:
     """A twentieth of the load, a tenth of a stance, six deviations."""
-    assert "friction above a twentieth of the load" in page("intervals.md")
+    assert "friction above a twentieth of the load" in page("left_out.md")
     assert slip_indicator.SMOOTH == 1 / 20
     assert "A tenth of a stance at landing and at lifting is left out" in page("walking.md")
     assert phases.SETTLING_SHARE == systematic.STANCE_END == 1 / 10

@@ -135,6 +135,8 @@ def test_what_is_not_excited_shows_in_the_rank() -> None:
     fit = fit_linear([still])
     assert fit.rank == 2
     assert np.isinf(fit.condition_number)
+    assert fit.singular
+    assert not fit_linear([one]).singular
     assert fit.values[1] == 0.0
     assert np.isfinite(fit.values).all()
     twice = Block("a", one.regressor[:, [0, 0]], one.response, 0.01)

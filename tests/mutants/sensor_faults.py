@@ -286,7 +286,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "sensors/accelerometer_delay.py", "an orientation drawn to its accelerometer passes for a late one",
-        "abs(gyroscope.late) + SURE * gyroscope.std < early / 2", "True", ("sensors/test_accelerometer_delay.py",),
+        "abs(gyroscope.late) + SHOWN * gyroscope.std < early / 2", "True", ("sensors/test_accelerometer_delay.py",),
     ),
     Mutant(
         "sensors/accelerometer_delay.py", "a late orientation is taken for an early accelerometer",

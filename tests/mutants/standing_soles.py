@@ -95,4 +95,18 @@ STANDING_SOLES = (
         SHARED,
     ),
     Mutant("feet/fit/worth.py", "put back as sure", ", hidden_share=fit.hidden_share)", ")", SHARED),
+    Mutant(
+        "estimation/errors_in_variables.py",
+        "a parabola of ten seconds",
+        "SECOND = 1.0",
+        "SECOND = 10.0",
+        ("feet/interval_width/test_systematic.py",),
+    ),
+    Mutant(
+        "feet/interval_width/systematic.py",
+        "feet that stand know their angle",
+        "        _angle_errors(fit, blocks, shared),\n",
+        "        *([_angle_errors(fit, blocks, shared)] if blocks[0].stances else []),\n",
+        ("feet/interval_width/test_systematic.py",),
+    ),
 )

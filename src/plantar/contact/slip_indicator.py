@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.contact.phases import joined
-from plantar.conventions import Array, Mask
+from plantar.conventions import SURE, Array, Mask
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.medians import running_median
 from plantar.signals.segments import runs
@@ -19,7 +19,6 @@ LEAST_SPEED = 0.002  # m/s, and for yaw at the moment arm of half a sole, rad/s 
 YAW_MOMENT_ARM = 0.1  # m
 USUAL = 80  # percent of the samples are slower than the noise's usual speed, however much slides
 USUAL_SPEED = 1.794  # that percentile of a plane vector's length, in deviations of its components
-SURE = 5.0  # deviations: no noise
 QUIETEST = 1e-6  # m/s: less is no noise
 POSSIBLE = 3.5  # deviations: part of a slide that is sure elsewhere
 LEAST_PATH = 0.0009  # m that a slide must cover

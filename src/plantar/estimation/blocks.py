@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from plantar.conventions import Array
 from plantar.estimation.orthonormal import orthonormal
 
+SINGULAR = 1e6  # condition of a fit beyond which its motions do not tell one column from the others
+
 
 @dataclass(frozen=True)
 class StanceRows:
@@ -99,6 +101,11 @@ class LinearFit:
     condition_number: float
     shared_offset: bool
     common_nuisance: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def singular(self) -> bool:
+        """Whether the motions do not tell its columns apart."""
+        return not self.condition_number <= SINGULAR
 
     @property
     def std(self) -> Array:

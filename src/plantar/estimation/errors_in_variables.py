@@ -13,8 +13,8 @@ from functools import lru_cache
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.blocks import Block
-from plantar.estimation.linear import information_inverse
+from plantar.estimation.blocks import Block, StanceRows
+from plantar.estimation.linear import fit_blocks, information_inverse
 from plantar.estimation.normal_equations import solved
 from plantar.estimation.stance_problem import StanceProblem, design
 from plantar.signals.filters import differentiate, gain, low_pass
@@ -24,6 +24,7 @@ from plantar.signals.segments import complete
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
 FEWEST = 50  # samples
+SECOND = 1.0  # s, within which an attitude that wanders is nearly a parabola in time
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
@@ -107,28 +108,43 @@ def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool =
     return np.asarray(np.linalg.solve(np.eye(size) - share, share @ values))
 
 
-def slow_attenuation(blocks: Sequence[Block], slope: float) -> Array:
-    """What errors of the first column may have taken off the values (k,) of a fit over stances, which change slowly, as
-    an attitude wanders: `slope` is the response's change with that column.
+def slow_attenuation(blocks: Sequence[Block], slope: float, *, shared_offset: bool = False) -> Array:
+    """What errors of the first column may have taken off the values (k,), which change slowly, as an attitude wanders:
+    `slope` is the response's change with that column.
 
-    Within a stance they are nearly a parabola in time. What stances leave of the response along such curves may be the
-    response's own error, and takes nothing then, or all that column's.
+    Within a stance, or a second of standing, they are nearly a parabola in time. What a fit leaves of the response
+    along such curves may be the response's own error, and takes nothing then, or all that column's.
     """
-    solution, size = StanceProblem.drawn_together(blocks).solve(), blocks[0].regressor.shape[1]
-    along = solution.squares - sum(
-        _beside_parabolas(block, own, solution.values)
-        for block, own in zip(blocks, solution.own, strict=True)
+    size = blocks[0].regressor.shape[1]
+    if blocks[0].stances is None or shared_offset:
+        inverse = information_inverse(blocks, shared_offset=shared_offset)
+        found = fit_blocks(blocks, shared_offset=shared_offset)
+        squares, left = found.squares, [found.residuals[block.label] for block in blocks]
+    else:
+        solution = StanceProblem.drawn_together(blocks).solve()
+        squares, inverse = solution.squares, solution.inverse
+        left = [
+            block.response - design(block, own.size - 1) @ np.concatenate([solution.values, own])
+            for block, own in zip(blocks, solution.own, strict=True)
+        ]
+    along = squares - sum(
+        _beside_parabolas(own, block.stances or _seconds(block))
+        for block, own in zip(blocks, left, strict=True)
     )
-    return np.asarray(solution.inverse[:size, 0] * (along / slope if along > 0 else 0.0))
+    return np.asarray(inverse[:size, 0] * (along / slope if along > 0 else 0.0))
 
 
-def _beside_parabolas(block: Block, own: Array, values: Array) -> float:
-    """The weighted squares that a solution leaves in the stances of a block beside a parabola in time of each."""
-    assert block.stances is not None, "a block of a foot that steps"
-    left = block.response - design(block, own.size - 1) @ np.concatenate([values, own])
+def _seconds(block: Block) -> StanceRows:
+    """The rows of a block, second by second."""
+    rows = np.arange(len(block.response))
+    return StanceRows((rows * block.period / SECOND).astype(np.intp), np.ones(len(rows)))
+
+
+def _beside_parabolas(left: Array, parts: StanceRows) -> float:
+    """The weighted squares of what is left (n,) beside a parabola in time of each part."""
     rest = 0.0
-    for rows in block.stances.split():
-        root = np.sqrt(block.stances.weight[rows])
+    for rows in parts.split():
+        root = np.sqrt(parts.weight[rows])
         curves = root[:, None] * np.linspace(-1.0, 1.0, len(rows))[:, None] ** np.arange(3)
         missed = root * left[rows]
         rest += float(np.sum((missed - curves @ np.linalg.lstsq(curves, missed, rcond=None)[0]) ** 2))

@@ -15,7 +15,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation.quantiles import MOST_FREEDOM, student_quantile
 
-SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/intervals.md: coverage study)
+SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/how_often_intervals_hold.md)
 FEWEST_COSINES = 4  # degrees of freedom of a deviation, however short the recording
 # Numbers of a recording's cosines up to which they are kept: products with so few take less than a transform.
 FEW = 2**15

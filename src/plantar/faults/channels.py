@@ -17,7 +17,7 @@ from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import longest_run, runs
 
 LOST_FRAMES = "lost_frames"
-TURNED = 0.02  # rad by which a joint moves, whose position stands still
+TURNED = 0.02  # rad by which a joint moves, or the same one of another leg, while its position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias

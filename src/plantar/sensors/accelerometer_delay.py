@@ -20,7 +20,7 @@ import numpy as np
 
 from plantar.contact.phases import carried_weight, detect_contact
 from plantar.contact.standing_imu import sole_motions, standing_loads
-from plantar.conventions import GRAVITY, NORMAL95, Array, rotation_from_quaternion
+from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array, rotation_from_quaternion
 from plantar.estimation.weighted_mean import weighted_mean
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
@@ -35,7 +35,6 @@ from plantar.signals.segments import runs
 SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
 EDGE = 1.0  # s at both ends of a stance: the filters'
 RATE = TOLD  # 1/s and axis, of values that tell something new: half of what the band holds: wander is red
-SURE = 3.0  # deviations
 LARGEST = 0.01  # s: the filter of an accelerometer of its own; later is a fault
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
@@ -110,15 +109,15 @@ def filter_delay(
         return 0.0, std
     if gyroscope is not None and gyroscope.shown and gyroscope.late < LARGEST and std < np.inf:
         usual = float(np.hypot(gyroscope.std, ALIKE))
-        if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
+        if abs(late - gyroscope.late) < SHOWN * float(np.hypot(std, usual)):
             share = usual**2 / (usual**2 + std**2)
             late, std = share * late + (1 - share) * gyroscope.late, std * float(np.sqrt(share))
             largest = np.inf  # beside a gyroscope that is read on time it must not stay behind
-    if SURE * std < late < largest:
+    if SHOWN * std < late < largest:
         return late, std
     early, unsure = behind[0], float(np.hypot(behind[1], STRAY))
-    kept = gyroscope is not None and abs(gyroscope.late) + SURE * gyroscope.std < early / 2
-    least = max(SURE * unsure, EARLY_ENCODERS)
+    kept = gyroscope is not None and abs(gyroscope.late) + SHOWN * gyroscope.std < early / 2
+    least = max(SHOWN * unsure, EARLY_ENCODERS)
     return (-early, unsure) if kept and late < 0 and least < early < LARGEST else (0.0, std)
 
 

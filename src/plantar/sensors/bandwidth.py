@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import Array
+from plantar.conventions import SURE, Array
 from plantar.notes import Note
 from plantar.sensors.newton_euler import NewtonEulerResidual
 
@@ -26,7 +26,6 @@ FEWEST = 12  # axes and frequencies that do
 # Of the logarithm of a gain at one frequency: masses and places of a URDF make as much.
 LEAST_DEVIATION = 0.01
 SLOWEST = 9.0  # Hz: behind a low-pass above it damping is off by less than some percent
-SURE = 5.0  # deviations
 
 
 class Fading(NamedTuple):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import SHOWN, Array
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import rates_from
@@ -19,7 +19,6 @@ USUAL = 0.005  # s: an orientation's own filter; a later one is a fault, or foll
 LEAST_SHARED = 0.02  # of the gyroscope's own squares: less shared by both sensors makes a step a leap
 ROUNDS = 8  # of short steps, as long as one is larger than usual
 LEAST = 0.0005  # s: less moves damping by less than its interval ever shows
-SURE = 3.0  # deviations
 
 
 class GyroscopeDelay(NamedTuple):
@@ -37,7 +36,7 @@ class GyroscopeDelay(NamedTuple):
 
 def of_a_filter(late: float, std: float) -> bool:
     """Whether a delay [s] is told from none, and a filter's: what follows the accelerometer makes a gyroscope early."""
-    return abs(late) > max(SURE * std, LEAST) and late > -USUAL
+    return abs(late) > max(SHOWN * std, LEAST) and late > -USUAL
 
 
 def log_gyroscope_delay(log: MotionLog, imu: str) -> GyroscopeDelay | None:

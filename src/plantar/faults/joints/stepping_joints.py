@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.errors import clock
+from plantar.faults.channels import TURNED
 from plantar.faults.joints.names import legs
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
@@ -17,7 +18,6 @@ from plantar.signals.footfalls import footfalls
 from plantar.signals.segments import runs
 
 FEWEST = 2  # times that the foot lands or leaves: a whole step or stance of it
-TURNED = 0.02  # rad by which the same joint of another leg turns meanwhile
 
 
 def check_stepping_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ from itertools import permutations
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.faults.channels import loaded_path, named
+from plantar.faults.channels import TURNED, loaded_path, named
 from plantar.faults.joints.names import legs
 from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
 from plantar.notes import Finding
@@ -17,7 +17,6 @@ from plantar.robot.model import RobotModel
 QUIET = 1e-4  # noise of IMU and force sensors over what they read: of devices it is a hundredth, of a simulation none
 ORDER = 5  # of differences: a smooth motion hardly passes them
 RAISED = 252.0  # times the square of white noise, which they make of it
-TURNED = 0.02  # rad by which the other leg's joint moves while this one does not
 MOST = (1.0, 99.0)  # percent of the samples: a spike is no motion
 
 

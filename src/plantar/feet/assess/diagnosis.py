@@ -36,7 +36,8 @@ REMEDY = {
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
-    "angle errors": "use an attitude that wanders less from step to step, and encoders without noise or play",
+    "angle errors": "use larger motions, beside which errors of the angle are small; or an attitude that wanders less, "
+    "and encoders without noise or play",
     ZEROS_OF_STANCES: "keep the foot on the floor through a recording: put down again, it lands with another zero",
     "bush position": "measure where the bush's centre is beside the force sensor, and write it into the robot file "
     "(bush: xyz, and uncertainty: bush_position); or record larger motions, which show it",

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.conventions import NORMAL95
+from plantar.conventions import NORMAL95, SURE
 from plantar.estimation import Block, fit_blocks
 from plantar.estimation.least_squares import sureness_of_own
 from plantar.estimation.linear import fits_of_halves
@@ -24,7 +24,6 @@ from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
 
 RECORDING_LATE = "recording_late"
-SURE = 5.0  # deviations by which a recording's damping must differ, as delays of logs that show them
 FEWEST = 8  # stances of a recording: four say how much they scatter
 TINY = 1e-9  # N.m.s/rad: exact logs have no deviation
 RATE = 1  # the place of the rate, and of damping, in spring and damper

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.conventions import NORMAL95
+from plantar.conventions import NORMAL95, SURE
 from plantar.estimation import Block, fit_blocks, influences_of, interval95
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.estimation.random_effects import Differences, Odd, furthest
@@ -24,7 +24,6 @@ from plantar.notes import Note
 from plantar.results.walk_rows import WalkStiffness
 
 CODE = "recording_odd"
-SURE = 5.0  # deviations from the others' mean; their own scatter is part of a deviation
 MUCH = 0.05  # of the stiffness; rubber that is warmer or stood under load before makes 1 to 3 %
 FAR = 0.75  # of the stiffness of all together: no rubber is so far off, but a wrong sign or unit is
 # Of the stiffness: a recording that makes less moves by a tenth of what the largest does, and all else that is wrong

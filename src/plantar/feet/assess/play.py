@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, SURE, Array
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -20,7 +20,6 @@ from plantar.notes import Note
 
 SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step
 BETTER = 1.5  # times less is left of the squares than by the model that was found
-SURE = 5.0  # deviations of the play
 CODE = "play"
 
 

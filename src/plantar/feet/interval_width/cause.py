@@ -11,8 +11,6 @@ from plantar.conventions import Array
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.feet.regression.axis import AxisFit
 
-SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
-
 
 @dataclass(frozen=True)
 class Cause:

@@ -10,16 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from plantar.conventions import Array
+from plantar.conventions import SHOWN, Array
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
-from plantar.feet.interval_width.cause import SINGULAR, Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque
 from plantar.feet.regression.regression_data import all_beside, recordings_of
 
 NAME = "encoders' delay"
-SUSPECTED = 3.0  # deviations from none
 
 
 def encoder_delay_causes(
@@ -38,7 +37,7 @@ def encoder_delay_causes(
         return [_cause(blocks, columns, unsure, shared)] if unsure else []
     found = fit_blocks(wider, shared_offset=shared)
     late, std = float(found.values[-1]), float(found.std[-1])
-    if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
+    if found.singular or abs(late) < SHOWN * std:
         return []
     return [_cause(blocks, columns, min(abs(late), ENCODERS_APART), shared)]
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
+from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array, Axis
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -32,7 +32,6 @@ LEAST_GAIN = 1e-4  # share: a sensor without any gain error, and a deviation tha
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
 LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
 SAFE = 0.5  # deviations by which a share may be larger than it looks
-BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
 HALVINGS = 50  # of an interval: what is left of it is rounding
 FAULTY = 0.15  # of robots: their force sensors are off by more than the robot file says,
 # By such a share (standard deviation): another unit of load, an old calibration, a wrong amplifier.
@@ -53,7 +52,7 @@ class GainError(NamedTuple):
     @property
     def sure(self) -> bool:
         """Whether the robot file's uncertainty cannot explain it."""
-        return abs(self.share) > BEYOND_DOUBT * float(np.hypot(self.usual, self.other))
+        return abs(self.share) > SHOWN * float(np.hypot(self.usual, self.other))
 
     @property
     def reach(self) -> float:

@@ -14,7 +14,7 @@ from plantar.estimation.errors_in_variables import slow_attenuation
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, has_memory, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
-from plantar.feet.interval_width.cause import SINGULAR, Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.interval_width.yaw_zero import yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
@@ -44,9 +44,9 @@ def systematic_causes(
     vertical: VerticalStiffness,
     shared: bool,
 ) -> list[Cause]:
-    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances, errors of
-    the angle and what a memory may share with the spring; of others a softening, a hardening that the model leaves out,
-    zeros that differ between stances, and for roll the zero of the yaw torque.
+    """The wrenches' delay, the moment arm of the compressed slide and errors of the angle; of feet that step the ends
+    of stances and what a memory may share with the spring; of others a softening, a hardening that the model leaves
+    out, zeros that differ between stances, and for roll the zero of the yaw torque.
 
     `blocks`: the recordings' `tangent_blocks`.
     """
@@ -67,16 +67,12 @@ def systematic_causes(
         Cause(
             "moment arm", effect_of(influences, moment_arms), vertical.compliance_std[foot], vertical.freedom
         ),
+        _angle_errors(fit, blocks, shared),
         *_hidden_memory(fit, steps=blocks[0].stances is not None),
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
-        return [
-            *causes,
-            _ends_of_stances(blocks),
-            _angle_errors(fit, blocks),
-            *_shared_slope(fit, recordings),
-        ]
+        return [*causes, _ends_of_stances(blocks), *_shared_slope(fit, recordings)]
     causes += [*_softening(fit), *_suspected_hardening(fit, blocks, shared)]
     causes += _zeros_of_stances(
         blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
@@ -121,9 +117,9 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     return Cause("ends of stances", effect, UNIFORM)
 
 
-def _angle_errors(fit: AxisFit, blocks: Sequence[Block]) -> Cause:
-    """What an attitude that wanders from step to step may do: anything from nothing to what would leave the torque."""
-    return Cause("angle errors", slow_attenuation(blocks, fit.equivalent[0]), UNIFORM)
+def _angle_errors(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> Cause:
+    """What an attitude that wanders may do: anything from nothing to what would leave the torque that is missed."""
+    return Cause("angle errors", slow_attenuation(blocks, fit.equivalent[0], shared_offset=shared), UNIFORM)
 
 
 def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
@@ -208,7 +204,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
         wider = beside(replace(block, noise=None), cube[:, None])
         extended.append(wider.with_nuisance((square - square.mean())[:, None]))
     found = fit_blocks(extended, shared_offset=shared)
-    if found.condition_number > SINGULAR:
+    if found.singular:
         return []
     hardening, std = float(found.values[size]), float(found.std[size])
     known = bool(found.std[0] < KNOWN * abs(fit.values[0]))

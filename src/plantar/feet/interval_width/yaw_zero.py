@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation import Block, effect_of, fit_blocks
-from plantar.feet.interval_width.cause import SINGULAR, Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, recordings_of
@@ -39,7 +39,7 @@ def yaw_torque_zero(
     """What the zeros may do to the fit: motions that show them smaller than is usual are believed."""
     count, usual = len(blocks), zeros.usual
     found, size = fit_blocks(all_beside(blocks, zeros.columns), shared_offset=shared), np.full(count, usual)
-    if usual and found.condition_number <= SINGULAR:
+    if usual and not found.singular:
         told, unsure = found.values[-count:], found.std[-count:]
         keeps = usual**2 / (usual**2 + unsure**2)
         size = np.minimum(np.hypot(keeps * told, np.sqrt(keeps) * unsure), usual)
@@ -54,7 +54,7 @@ def fit_beside(zeros: YawZeros | None, blocks: Sequence[Block]) -> tuple[Array, 
     size = blocks[0].regressor.shape[1]
     if zeros is not None and zeros.usual:
         found = fit_blocks(all_beside(blocks, zeros.columns))
-        if found.condition_number <= SINGULAR:
+        if not found.singular:
             own = slice(size, len(found.values))
             covariance = found.covariance[: own.stop, : own.stop]  # without the offsets'
             spread = covariance[own, own] + zeros.usual**2 * np.eye(len(blocks))

@@ -29,7 +29,6 @@ from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.partialled_out import Linearised
 
 ENCODERS_LATE = UNIFORM * ENCODERS_APART  # s
-SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
 
 
 def about_its_place(
@@ -105,7 +104,7 @@ def _with_late_encoders(
         found = fit_blocks(tried, shared_offset=shared)
         # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
         noisy = attenuation(_with_noise(tried, found), found.values, shared_offset=shared)
-        if found.condition_number <= SINGULAR and noisy is not None:
+        if not found.singular and noisy is not None:
             return _with_absorbed_noise(tried, found, shared), noisy, np.array(apart)
     return found, None, np.zeros(0)
 

@@ -15,8 +15,6 @@ from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import late_encoder_torque
 from plantar.feet.regression.regression_data import all_beside, blocks_of, recordings_of
 
-SINGULAR = 1e6  # condition of a fit beyond which its motions do not show the turn
-
 
 class ImuTurn(NamedTuple):
     """`angles` [rad] about the IMU's own axes that put its angles right, the opposite of those by which it is turned
@@ -58,7 +56,7 @@ def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> t
 
 def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
     """What a fit of `with_turns` tells of the turn; empty where its motions do not tell it from the bush."""
-    if not shown.any() or not found.condition_number < SINGULAR:
+    if not shown.any() or found.singular:
         return []
     own = slice(len(found.values) - int(shown.sum()), len(found.values))
     angles, information = np.zeros(3), np.zeros((3, 3))

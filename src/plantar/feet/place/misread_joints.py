@@ -16,7 +16,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
-from plantar.conventions import ROTATIONAL_AXES, Array, cross
+from plantar.conventions import ROTATIONAL_AXES, SURE, Array, cross
 from plantar.estimation import Block, fit_blocks, least_left
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
@@ -28,7 +28,6 @@ from plantar.signals.orientation import attitude
 
 MISREAD = "joint_misread"
 OUT_OF_TIME = "imu_out_of_time"
-SURE = 5.0  # deviations of what is misread
 # Times less that is left of the squares than by the bush alone; play shows at its joint's turns only.
 BETTER, BETTER_TURNING = 1.5, 1.3
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
@@ -40,7 +39,6 @@ ALL_LATE = 0.25  # s, likewise of all joints, which are late together where it i
 PART = 0.5
 SOFT = 0.1  # of a joint's fast rate, within which its sign changes: behind a filter it is no step
 FAST = 98  # percentile
-SINGULAR = 1e6  # condition of the fit beyond which the motions do not tell
 
 
 class Misread(NamedTuple):
@@ -111,7 +109,7 @@ def _misread(
     size, std = float(fit.values[-1]), float(fit.std[-1])
     most = {"gain": GAIN, "late": LATE, "together": ALL_LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
-    if not (SURE * std < away < most and fit.condition_number < SINGULAR):
+    if not (SURE * std < away < most and not fit.singular):
         return None
     moved = (fit.values[:2] - usual[:2]) / (PART if kind == "play" else 1.0)
     return Misread(joint, kind, size, fit.squares, not wide.holds(moved))

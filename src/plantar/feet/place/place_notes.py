@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.conventions import NORMAL95, Array
+from plantar.conventions import NORMAL95, SHOWN, Array
 from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 
-CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 BUSH_WORTH_SAYING = 0.035  # of the other axis' torque in both axes: mounts a degree off show half as much
@@ -27,7 +26,7 @@ def place_notes(fit: AxisFit, place: Array, std: Array, prior: Array) -> list[No
     about its x, y and z [rad].
     """
     least = np.array([WORTH_SAYING] * 2 + [TURN_WORTH_SAYING] * 4)
-    aside, above, turned, *imu = np.abs(place) > np.maximum(CLEAR * np.hypot(prior, std), least)
+    aside, above, turned, *imu = np.abs(place) > np.maximum(SHOWN * np.hypot(prior, std), least)
     (x, z), (of_x, of_z) = 1e3 * place[:2], 1e3 * NORMAL95 * std[:2]
     degrees, of = np.degrees(np.abs(place)), np.degrees(NORMAL95 * std)
     told, key = [], f"feet.{fit.foot}"

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.conventions import Array, Axis
-from plantar.feet.place.place_notes import CLEAR, FAR, FARTHEST, PLACE
+from plantar.conventions import SHOWN, Array, Axis
+from plantar.feet.place.place_notes import FAR, FARTHEST, PLACE
 from plantar.feet.regression.axis import AxisFit
 from plantar.robot.model import RobotModel
 
@@ -40,7 +40,7 @@ class PlaceSpread:
 
         By `aside`, which is as the robot file has it: `above` grows where a foot's motions put the file in doubt.
         """
-        return bool(CLEAR * self.aside < FARTHEST[0])
+        return bool(SHOWN * self.aside < FARTHEST[0])
 
     @property
     def expected(self) -> Array:
@@ -56,7 +56,7 @@ class PlaceSpread:
         """
         (height,) = (fit.moment_arms[1] for other, fit in fits.items() if other != axis)
         above = min(self.above, self.between)
-        far = abs(height) > max(CLEAR * above, abs(fits[axis].moment_arms[1]))
+        far = abs(height) > max(SHOWN * above, abs(fits[axis].moment_arms[1]))
         return replace(self, height=height) if far else None
 
     def doubted_by(self, others: Sequence[AxisFit], own: Sequence[AxisFit]) -> PlaceSpread:
@@ -67,7 +67,7 @@ class PlaceSpread:
         told = [fit for fit in others if any(note.code in (PLACE, FAR) for note in fit.notes)]
         height = max((abs(fit.moment_arms[1]) for fit in told), default=0.0)
         least = min((abs(fit.moment_arms[1]) for fit in own), default=height)
-        doubted = height > CLEAR * self.above and least < ALIKE * height
+        doubted = height > SHOWN * self.above and least < ALIKE * height
         return replace(self, above=height) if doubted else self
 
     @classmethod

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Axis
+from plantar.conventions import ROTATIONAL_AXES, SURE, Axis
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.place.place_notes import BUSH_WORTH_SAYING, STEPS_WORTH_SAYING, turned_bush
 from plantar.feet.recording import Recording
@@ -16,9 +16,7 @@ from plantar.feet.regression.load_torque import others_torque
 from plantar.feet.regression.regression_data import all_beside, recordings_of, tangent_blocks
 from plantar.notes import Note
 
-SURE = 5.0  # deviations of the other axis' share, from which stances show it
 STEPS_LEAVE = 0.75  # of the squares that the model of one axis leaves
-SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
 
 
 def turned_bush_note(
@@ -51,7 +49,7 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
     wider = all_beside(blocks, other)
     alone, found = (fit_blocks(each, shared_offset=shared) for each in (blocks, wider))
     size = blocks[0].regressor.shape[1]
-    sure = found.condition_number <= SINGULAR and abs(found.values[size]) > SURE * found.std[size]
+    sure = not found.singular and abs(found.values[size]) > SURE * found.std[size]
     return (float(found.values[size]) if sure else 0.0), found.squares / max(
         alone.squares, np.finfo(float).tiny
     )

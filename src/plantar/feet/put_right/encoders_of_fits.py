@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plantar.conventions import SHOWN
 from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
-from plantar.feet.interval_width.cause import SINGULAR
 from plantar.feet.interval_width.encoder_delay import with_late_encoders
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording, has_steps
@@ -24,7 +24,6 @@ from plantar.feet.regression.load_torque import ENCODERS_APART
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.sensors.delays.refined_delays import APART, LEAST_DISTINCT
 
-SURE = 3.0  # deviations from how they are read, beyond which encoders are read anew
 # s: of K/C = 25 1/s it is a thousandth of the damping, and where joints turn ten times as fast as the bush a hundredth.
 NEGLIGIBLE = 5e-5
 # Of the torque: no law of a bush on a floor is better. Free of noise, what it misses passes for a millisecond where
@@ -40,7 +39,7 @@ class Late(NamedTuple):
 
     def is_worth(self, taken: float) -> bool:
         """Whether that is clearly another delay than the one `taken` [s]."""
-        return abs(self.value - taken) > max(SURE * self.std, NEGLIGIBLE)
+        return abs(self.value - taken) > max(SHOWN * self.std, NEGLIGIBLE)
 
 
 def newton_told(ready: PreparedLogs) -> Late | None:
@@ -101,7 +100,7 @@ def encoders_shown(feet: Mapping[str, FittedFoot], told: Late, taken: float) -> 
                 if wider is None:
                     continue
                 found = fit_blocks(wider, shared_offset=shared)
-                if found.condition_number <= SINGULAR:
+                if not found.singular:
                     values.append(taken + float(found.values[-1]))
                     variances.append(float(found.std[-1]) ** 2 + _missed(wider, shared) ** 2)
     if not values:

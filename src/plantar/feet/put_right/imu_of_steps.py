@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.conventions import SHOWN
 from plantar.estimation import fit_blocks
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
@@ -19,7 +20,6 @@ from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.notes import Note, Severity
 
-SURE = 3.0  # deviations from none, about any axis, from which angles are put right
 FAR = 3.0  # deviations of the robot file's, beyond which the mount is worth a look
 
 
@@ -52,7 +52,7 @@ def turn_shown(feet: Mapping[str, FittedFoot], found: ImuTurn, mount: float) -> 
 def is_worth(shown: ImuTurn, found: ImuTurn) -> bool:
     """Whether the turn shown is clearly another one than that which was found before."""
     apart = np.abs(np.array(shown.angles) - found.angles)
-    return bool((apart > SURE * np.sqrt(np.diag(shown.covariance))).any())
+    return bool((apart > SHOWN * np.sqrt(np.diag(shown.covariance))).any())
 
 
 def put_right(ready: PreparedLogs, shown: ImuTurn) -> PreparedLogs:

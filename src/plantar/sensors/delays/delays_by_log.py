@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plantar.conventions import SURE
 from plantar.estimation.delays.delay import Pair, estimate_delay
 from plantar.notes import Note
 
-SURE = 5.0  # deviations by which two logs must differ
 LEAST = 0.003  # s, and by so much: half of it moves the damping of K/C = 30 1/s by less than a twentieth
 
 
