@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.conventions import SHOWN
 from plantar.feet.place.bush_place import about_its_place
-from plantar.feet.place.place_notes import CLEAR, PLACE, WORTH_SAYING
+from plantar.feet.place.place_notes import PLACE, WORTH_SAYING
 from plantar.feet.place.spread import GUESSED, PlaceSpread
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -47,7 +48,7 @@ def shown_elsewhere(
         if moved is fit:
             continue  # it steps: its stances have shown the place already
         arms, std = np.array(moved.moment_arms), np.array(moved.place_std[:2])
-        if (np.abs(arms) > np.maximum(CLEAR * np.hypot(std, told.aside), WORTH_SAYING)).any():
+        if (np.abs(arms) > np.maximum(SHOWN * np.hypot(std, told.aside), WORTH_SAYING)).any():
             return Note(PLACE, "warning", _text(fit, told, usual))
     return None
 
