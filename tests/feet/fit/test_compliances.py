@@ -61,7 +61,7 @@ def test_feet_that_were_told_apart_stay_as_they_were() -> None:
 
 def test_a_foot_that_is_three_times_stiffer_makes_z_unsure(robot: RobotModel) -> None:
     """Its torques read three times as much: z, of which the sum alone shows, may differ as well."""
-    log = noisy(record(sway(seed=1)), 1)
+    log = noisy(record(sway(seed=1, duration=40.0)), 1)
     moved = {name: 3.0 * log.column(name) for name in log.columns if name.startswith("wrench.left.torque")}
     alike, unlike = (identify_feet(robot, [one], settings=LINEAR) for one in (log, log.with_columns(moved)))
     for foot in FEET:
