@@ -11,7 +11,7 @@ from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
 from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
 from plantar.feet.place.spread import PlaceSpread
-from plantar.feet.place.told_exact import as_measured, shown_elsewhere
+from plantar.feet.place.told_exact import as_measured
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.put_right.encoders_of_fits import (
     Late,
@@ -28,7 +28,6 @@ from plantar.feet.shared_hysteresis import with_shared_hysteresis
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.logs.stretches import LONGEST
-from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -149,12 +148,9 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
         found = over_cores(fit_foot, [ready] * len(places), places, places.values())
         return dict(zip(places, found, strict=True))
 
-    found, exact = fit_all(places), dict[str, Note]()
-    for foot, place in places.items():
-        own, usual, shared = found[foot], as_measured(ready.robot, foot), ready.settings.offset == "shared"
-        note = shown_elsewhere([*own.fits.values()], own.thin.fitted, place, usual, shared)
-        if note is not None:
-            places[foot], exact[foot] = usual, note
+    found = fit_all(places)
+    exact = {foot: one.elsewhere for foot, one in found.items() if one.elsewhere is not None}
+    places |= {foot: as_measured(ready.robot, foot) for foot in exact}
     found |= fit_all({foot: places[foot] for foot in exact})
     fits = {foot: [*one.fits.values()] for foot, one in found.items()}
     wider = {
