@@ -48,7 +48,7 @@ def shown_elsewhere(
         if moved is fit:
             continue  # it steps: its stances have shown the place already
         arms, std = np.array(moved.moment_arms), np.array(moved.place_std[:2])
-        if (np.abs(arms) > np.maximum(SHOWN * np.hypot(std, told.aside), WORTH_SAYING)).any():
+        if (np.abs(arms) > np.maximum(SHOWN * np.hypot(std, usual.aside), WORTH_SAYING)).any():
             return Note(PLACE, "warning", _text(fit, told, usual))
     return None
 
