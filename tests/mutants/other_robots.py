@@ -106,8 +106,8 @@ OTHER_ROBOTS = (
     Mutant(
         "feet/place/told_exact.py",
         "a place that is told as exact is exact",
-        "if told.aside >= usual.aside:",
-        "if told.aside >= 0:",
+        "if 2 * told.aside > usual.aside:",
+        "if 2 * told.aside >= 0:",
         ("feet/place/test_told_exact.py",),
     ),
     Mutant(
