@@ -200,28 +200,31 @@ void what_differs_between_blocks_moves_nothing() {
   check::near(axis.values().value[DAMPING], DAMPING_TRUTH, 2.0, "damping beside drift and twist");
 }
 
-// The force's noise is in the columns of the bush's place, and through the sensor's place in the torque.
-void noise_of_forces_moves_nothing() {
-  double mean = 0.0;
+// The force's noise is in the columns of the bush's place, and through the sensor's place in the torque. One that goes
+// with the motion tells the place badly; another would by its noise move it by 4 mm.
+void noise_of_forces_moves_nothing(Unknown column, NoiseSource of_force, bool with_motion) {
+  double mean = 0.0, place = 0.0;
   for (unsigned seed = 0; seed < 10; ++seed) {
     RegressionPrior known = prior();
-    known.spread[ABOVE] = 0.01, known.horizontal_arm = 0.05;
+    known.spread[column] = with_motion ? 0.01 : 0.1;
+    (of_force == OF_LOAD ? known.load_arm : known.horizontal_arm) = 0.05;
     AxisRegression axis(known);
     Source source(seed);
     for (int i = 0; i < 4000; ++i) {
       const double t = ROW * i, noise = 2.0 * source.normal(source.random);
       RegressionRow row = source.row(t, 800.0, 0.0, 0.0);
-      const double force = 3.0 * std::sin(2.0 * t + 0.5) + std::sin(3.1 * t);  // goes with the motion
+      const double force = with_motion ? 3.0 * std::sin(2.0 * t + 0.5) + std::sin(3.1 * t) : 10.0 * std::sin(3.1 * t);
       row.torque += 0.003 * force + 0.05 * noise;
-      row.columns[ABOVE] = force + noise;
-      row.noise[OF_HORIZONTAL] = 4.0;
+      row.columns[column] = force + noise;
+      row.noise[of_force] = 4.0;
       axis.add(row, ROW);
       axis.work();
     }
     for (int i = 0; i < 4; ++i) axis.work();
-    mean += axis.values().value[STIFFNESS] / 10;
+    mean += axis.values().value[STIFFNESS] / 10, place += axis.values().value[column] / 10;
   }
   check::near(mean, 800.0, 3.0, "stiffness beside a force with noise, which alone would take 11 off");
+  if (!with_motion) check::near(place, 0.003, 4e-4, "place of the bush beside a force with noise");
 }
 
 // Under a load that changes, and when most of what was learnt has been forgotten again, a weak force's noise is still
@@ -315,7 +318,9 @@ void run() {
   slow_motions_tell_the_stiffness();
   a_block_that_moves_the_value_widens_it();
   what_differs_between_blocks_moves_nothing();
-  noise_of_forces_moves_nothing();
+  noise_of_forces_moves_nothing(ABOVE, OF_HORIZONTAL, true);
+  noise_of_forces_moves_nothing(ABOVE, OF_HORIZONTAL, false);
+  noise_of_forces_moves_nothing(ASIDE, OF_LOAD, false);
   noise_under_changing_loads_moves_nothing(80.0, "beside noise under a changing load");
   noise_under_changing_loads_moves_nothing(600.0, "the same, when older data have faded");
   the_compliance_is_learnt();

@@ -61,7 +61,7 @@ void a_heading_that_passes_half_a_turn_is_no_slide() {
 }
 
 void an_edge_is_told_from_where_its_visit_began() {
-  EdgeWatch watch(WEIGHT);
+  EdgeWatch watch(WEIGHT, 0.06);
   const auto leans = [&watch](double angle) {
     bool told = false;
     for (int tick = 0; tick < 200; ++tick) told = watch.step(0.004, 300.0, {angle, 0.0}, {0.0, 0.0}, PERIOD);
@@ -71,6 +71,21 @@ void an_edge_is_told_from_where_its_visit_began() {
   check::that(leans(0.06), "one that turns on while its torque stays does");
   watch.restart();
   check::that(!leans(0.06), "begun anew, it does not");
+}
+
+void the_middle_of_a_small_sole_is_not_its_edge() {
+  const auto leans = [](double half_width, double inside) {
+    EdgeWatch watch(WEIGHT, half_width);
+    bool told = false;
+    for (int tick = 0; tick < 400; ++tick) {
+      const double angle = tick < 200 ? 0.0 : 0.02;
+      told = watch.step(inside, 0.5 * WEIGHT, {angle, 0.0}, {0.0, 0.0}, PERIOD);
+    }
+    return told;
+  };
+  check::that(leans(0.06, 0.015), "of a large one a zero may move the edge so far");
+  check::that(!leans(0.021, 0.015), "of a small one it may not");
+  check::that(leans(0.021, 0.009), "but nearer to it");
 }
 
 void a_delay_stays_in_doubt_until_it_is_excluded() {
@@ -147,6 +162,7 @@ void run() {
   a_zero_is_the_mean_of_swings_without_their_ends();
   a_heading_that_passes_half_a_turn_is_no_slide();
   an_edge_is_told_from_where_its_visit_began();
+  the_middle_of_a_small_sole_is_not_its_edge();
   a_delay_stays_in_doubt_until_it_is_excluded();
   an_unknown_zero_may_make_a_load_differ();
   noise_of_a_rate_is_that_of_its_angle();

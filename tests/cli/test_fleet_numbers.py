@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
 import pytest
 
+from plantar.cli.fleet import report
 from plantar.cli.fleet.run import _duration, counts
 from plantar.fleet.run import Outcome
 from plantar.fleet.tables import Written
@@ -22,3 +27,25 @@ def test_the_last_line_counts_what_came_of_the_groups() -> None:
     assert counts(outcome) == (
         "9 groups: 7 with results, 2 were there already, 2 failed, 5 failures in failures.parquet"
     )
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"), [({"quiet": True}, []), ({}, ["alarms", "fleet.html"]), ({"json": True}, ["{"])]
+)
+def test_a_report_says_its_alarms_and_page_but_when_it_is_to_be_quiet(
+    asked: dict[str, bool],
+    said: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    summary, rates = SimpleNamespace(to_dict=lambda: {"robots": 3}), list[float]()
+    monkeypatch.setattr(report, "write_report", lambda _, rate: rates.append(rate) or summary)
+    monkeypatch.setattr(report, "print_alarms", lambda _: print("alarms"))
+    report.run(str(tmp_path), false_alarms=0.5, **asked)
+    text = capsys.readouterr().out
+    assert rates == [0.5]
+    if asked.get("json"):
+        assert json.loads(text) == {"robots": 3}
+    else:
+        assert [line.rpartition("/")[2] for line in text.split()] == said

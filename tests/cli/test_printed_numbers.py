@@ -73,13 +73,15 @@ def test_a_replay_is_summed_up_in_percent_and_milliradians() -> None:
 
 def test_a_diagnosis_has_its_shares_in_percent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     row = Parameter("left", "pitch", "damping", "N.m.s/rad", 20.0, 0.2, (19.6, 20.4), 0.1, "weak", "wide")
-    shares = {"delay": 0.747, "noise": 0.25, "model": 0.003}
+    shares = {"delay": 0.737, "noise": 0.25, "place": 0.01, "model": 0.003}
     told = Diagnosis("left", "pitch", "damping", "delay", shares, 2.04, "said", advice="measure it")
     result = FeetResult("b", (), {}, "kelvin_voigt", (row,), (), (), (), (), diagnosis=(told,))
     assert run("diagnose", result.save(tmp_path)) == 0
     text = capsys.readouterr().out
     assert "left  pitch  damping" in text
-    assert " 2  delay       delay 75 %, noise 25 %\n" in text, "what makes next to nothing is left out"
+    assert " 2  delay       delay 74 %, noise 25 %, place 1 %\n" in text, (
+        "what makes next to nothing is left out"
+    )
     assert "Against delay: measure it." in text
 
 

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.spatial.transform import Rotation
 
 import example_robots
 from plantar import _core
-from plantar.contact.deflection import BushState, bush_states, foot_motions
+from plantar.contact.deflection import BushState, bush_states, foot_motions, onto_sole
 from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
@@ -292,6 +293,12 @@ def test_large_and_missing_angles_keep_their_meaning() -> None:
     assert np.isnan(after[9]).all()
     keep = np.arange(16) != 9
     np.testing.assert_allclose(after[keep], before[keep], atol=1e-8)
+    far = moved["positions"] + 10.0 ** np.linspace(0, 9, 16)[:, None]
+    near = np.arctan2(np.sin(far), np.cos(far))
+    after, before = (
+        states(model, {**moved, "positions": turned}, none)["left"].deflection for turned in (far, near)
+    )
+    np.testing.assert_allclose(after, before, atol=1e-12, err_msg="as good as their sines and cosines")
 
 
 def test_bad_arrays_and_a_robot_without_imu_are_named() -> None:
@@ -305,3 +312,13 @@ def test_bad_arrays_and_a_robot_without_imu_are_named() -> None:
     blind = RobotModel("robot", model.path, model.path, model.urdf, "floating", None, model.feet, {}, {}, {})
     with pytest.raises(RobotError, match="imu"):
         states(blind, moved, wrenches)
+
+
+def test_a_vector_seen_from_the_deflected_sole() -> None:
+    random = np.random.default_rng(4)
+    vector, pitch, roll = random.normal(size=(50, 3)), *random.uniform(-0.5, 0.5, (2, 50))
+    turned = pin.utils.rotate("y", pitch[7]) @ pin.utils.rotate("x", roll[7])
+    found = onto_sole(vector, pitch, roll)
+    np.testing.assert_allclose(found[7], turned.T @ vector[7], atol=1e-15)
+    back = Rotation.from_euler("YX", np.column_stack([pitch, roll])).apply(found)
+    np.testing.assert_allclose(back, vector, atol=1e-14)

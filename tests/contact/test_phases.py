@@ -21,6 +21,7 @@ from plantar.contact.phases import (
     widened,
 )
 from plantar.contact.polygon import convex_hull, inside_distance
+from plantar.contact.reasons import LeftOut, Reason
 
 PERIOD = 0.01
 WEIGHT = 600.0
@@ -177,6 +178,20 @@ def test_stretches_are_widened_and_joined() -> None:
     assert np.flatnonzero(widened(mask, 0, 2)).tolist() == [5, 6, 7, 9, 10, 11]
     assert np.flatnonzero(joined(mask, 3)).tolist() == [5, 6, 7, 8, 9]
     assert np.flatnonzero(joined(mask, 2)).tolist() == [5, 9]
+    ends = np.isin(np.arange(20), [1, 19])
+    assert np.flatnonzero(widened(ends, 2)).tolist() == [0, 1, 2, 3, 17, 18, 19]
+
+
+def test_a_phase_ends_where_support_or_reason_changes() -> None:
+    support = np.array([0, 0, 1, 1, 1, 1], dtype=np.int8)
+    code = np.array([0, 0, 0, 0, 1, 1], dtype=np.int8)
+    contact = FootContact(support, code, (LeftOut(Reason.SETTLING),))
+    found = contact.phases("m", "left", np.arange(6) * 0.5)
+    assert [(one.start, one.end, one.support, one.used) for one in found] == [
+        (0.0, 1.0, SUPPORTS[0], True),
+        (1.0, 2.0, SUPPORTS[1], True),
+        (2.0, 2.5, SUPPORTS[1], False),
+    ]
 
 
 def test_the_weight_that_the_feet_carry() -> None:

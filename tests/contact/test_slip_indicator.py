@@ -121,6 +121,13 @@ def test_a_sole_that_turns_is_seen_whatever_the_other_does() -> None:
     assert not turning(twist_speed(to_and_fro + drift, BOTH, PERIOD), PERIOD).any(), "a bush that turns back"
 
 
+def test_a_foot_in_the_air_turns_on_no_floor() -> None:
+    """Its heading is known there, and moves."""
+    standing, heading = BOTH & ((TIME < 5.0) | (TIME > 7.0)), apart(np.radians(4), 5.5, 6.5)
+    found = twist_speed(heading, standing, PERIOD)
+    np.testing.assert_array_equal(np.isfinite(found), standing)
+
+
 def test_a_slide_that_is_sure_makes_no_other_one_sure() -> None:
     sure, possible = (TIME >= 8.0) & (TIME < 8.4), (TIME >= 12.0) & (TIME < 12.4)
     speed = np.where(sure, 0.006, np.where(possible, 0.004, 0.0005))

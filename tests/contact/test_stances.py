@@ -9,7 +9,7 @@ import pytest
 
 from plantar.contact.phases import SUPPORTS, detect_contact
 from plantar.contact.reasons import TIPPING, LeftOut, Reason
-from plantar.contact.stances import stances_of, without_rolling
+from plantar.contact.stances import Stances, stances_of, without_rolling
 
 PERIOD, WEIGHT = 0.01, 600.0
 
@@ -112,3 +112,8 @@ def test_readings_of_a_sensor_that_repeats_its_values_count_once() -> None:
     held = np.repeat(wrench[::10], 10, axis=0)[: len(wrench)]
     assert stances.readings(held) == pytest.approx(whole / 10, abs=1)
     assert replace(stances, number=np.full(len(force), -1)).readings(wrench) == 0
+
+
+def test_a_foot_that_stays_in_the_air_has_no_stance() -> None:
+    assert Stances(np.full(5, -1), np.zeros(5)).count == 0
+    assert Stances(np.array([-1, 0, 0, 2]), np.zeros(4)).count == 3

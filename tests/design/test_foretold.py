@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import design_samples
+from plantar.design.known import Known
 from plantar.design.rehearsals.rehearsal import Rehearsal
 from plantar.design.story import Design, DesignSettings
 from plantar.design.writing.foretold import foretold
@@ -16,7 +17,8 @@ from plantar.twin.robots import hrp2
 # Of a motion, all that is looked at: what it was made for. Nothing was searched or played.
 UNPLAYED = Design(
     settings=DesignSettings(design_samples.STIFFNESS), robot=hrp2.robot(), told=design_samples.told(),
-    factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None, coefficients=np.zeros(0), rehearsals=(), pairs=0,
+    factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None,
+    coefficients=np.zeros(0), trajectory=None, rehearsals=(), pairs=0,
 )  # fmt: skip
 
 
@@ -48,6 +50,18 @@ def test_an_axis_that_is_bent_too_little_is_said_with_what_it_would_need() -> No
     assert "beyond 12.5" in note
     assert "no stiffer than 800 N·m/rad" in note
     assert "--after" in note
+
+
+def test_a_second_motion_says_what_no_third_one_would_show_and_what_the_first_one_did() -> None:
+    unsure, sure = np.full(2, np.inf), np.array([1.0, 0.1])
+    second = replace(bent(0.010), known=Known(700.0, 28.0, 600.0, 800.0, {("left", "roll"): unsure}, None))
+    (note,) = foretold(second, rows(40.0, 21.0, usable=False))
+    assert "no stiffer than 800 N·m/rad: this robot's soles do not hold what it takes" in note
+    assert "--after" not in note
+    second = replace(second, known=Known(700.0, 28.0, 600.0, 800.0, {("left", "roll"): sure}, None))
+    assert foretold(second, rows(40.0, 21.0, usable=False)) == [
+        "left roll is known, and weak from this motion alone: identify both logs together"
+    ]
 
 
 def test_an_axis_that_is_weak_for_another_reason_gets_no_advice_to_bend_it() -> None:

@@ -10,7 +10,7 @@ import pytest
 from plantar.conventions import NORMAL95
 from plantar.design.known import Known
 from plantar.errors import DataError
-from plantar.results.feet import FeetResult, Parameter
+from plantar.results.feet import Diagnosis, FeetResult, Parameter
 
 SPRING = 0.5
 WIDER = 1.1
@@ -58,6 +58,41 @@ def test_a_weak_stiffness_widens_the_range_and_is_not_believed() -> None:
     assert np.isfinite(less.deviations["left", "pitch"]).all()
     nothing = tuple(replace(row, verdict="weak") for row in result.parameters)
     assert Known.of(replace(result, parameters=nothing)).stiffness == pytest.approx(known.stiffness)
+
+
+def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
+    """Found: 300 in roll, of which an element makes up to 40 %; the sum is sure to 3 %. Pitch shows the element."""
+    result, low, share = found(), 0.6 * 300.0, 1.0 - (0.03 / 0.4) ** 2
+    rows = [
+        replace(row, verdict="weak", interval95=(low, 1.4 * 300.0))
+        if (row.axis, row.name) == ("roll", "stiffness")
+        else row
+        for row in result.parameters
+    ]
+    rows += [
+        Parameter("left", "pitch", name, "", value, 0.0, None, 0.0, "usable", "")
+        for name, value in (("slip_torque", 1.2), ("slip_angle", 0.012))
+    ]
+    hidden = Diagnosis("left", "roll", "stiffness", "hidden memory", {"hidden memory": share}, 40.0, "")
+    usable = [row for row in rows if (row.name, row.verdict) == ("stiffness", "usable")]
+    stiffest = max(row.interval95[1] for row in usable if row.interval95)
+    known = Known.of(replace(result, parameters=tuple(rows), diagnosis=(hidden,)))
+    assert known.element == pytest.approx(
+        [100.0, 50.0]
+    )  # of roll: in the proportion of what rubber usually has
+    assert known.low == pytest.approx(low / WIDER)  # the interval holds the element
+    assert known.high == pytest.approx(WIDER * stiffest)  # not the weak interval's 420
+    softer = tuple(
+        replace(row, value=200.0, interval95=(196.0, 204.0)) if row in usable else row for row in rows
+    )
+    known = Known.of(replace(result, parameters=softer, diagnosis=(hidden,)))
+    assert known.high == pytest.approx(WIDER * (1.03 * 300.0 - 50.0))
+    alone = tuple(row for row in rows if row not in usable)
+    known = Known.of(replace(result, parameters=alone, diagnosis=(hidden,)))
+    assert known.high == pytest.approx(WIDER * known.stiffness)  # never below what is designed for
+    no_element = Known.of(replace(result, parameters=tuple(rows[:-2]), diagnosis=(hidden,)))
+    assert no_element.element is None
+    assert no_element.low == pytest.approx(SPRING * low / WIDER)
 
 
 def test_a_result_without_numbers_is_refused() -> None:

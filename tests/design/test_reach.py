@@ -36,6 +36,9 @@ def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
     stiff = Softness.told(hrp2.robot(), 800.0, None)
     more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff]).element
     assert more == pytest.approx(800.0 * np.array(SHARE))
+    measured = np.array([2.0, 0.5]) * np.array(SLIP_TORQUE) / SLIP_ANGLE
+    known = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff], measured).element
+    assert known == pytest.approx([measured[0], SLIP_TORQUE[1] / SLIP_ANGLE])
 
 
 def test_limits_are_held_to_shares_of_each_kind_over_each_bush() -> None:

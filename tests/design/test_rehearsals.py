@@ -106,6 +106,18 @@ def test_the_ends_come_first_then_what_did_not_hold_and_all_hold_in_the_end() ->
     )
 
 
+def test_joints_move_less_where_legs_do_not_reach_and_soles_hold_what_they_held() -> None:
+    motion, reach = standing(0.4), design_samples.reach()
+    motion.reach, motion.coefficients = reach, 0.5 * design_samples.coefficients()
+    shares = motion.shares.copy()
+    largest = reach.held(np.full(shares.shape, 1e9)).used(motion.coefficients)
+    with patch.object(motion, "better", lambda within, start: start / within.used(start)):
+        motion.shrink()
+    assert motion.others == pytest.approx(0.85 * largest)
+    assert reach.used_over_none(motion.coefficients) <= 0.85 * largest * (1 + 1e-9)
+    assert np.array_equal(motion.shares, shares)
+
+
 def test_arms_that_touch_something_are_left_out_and_limits_hold_without_them() -> None:
     motion = standing()
     motion.reach = Mock(lines=design_samples.reach().lines)

@@ -120,7 +120,7 @@ def test_limits_are_told_with_the_worst_of_the_rehearsals(written: Path) -> None
             "vertical_compliance_percent": 30.0,
         }
     )
-    way, speed = found.trajectory().limits_used()
+    way, speed = found.trajectory.limits_used()
     reached = [0.01, 0.1 + 0.01 * (len(unlike) - 1), 0.8, way, speed]
     assert [one["reached"] for one in content["limits"]] == pytest.approx(reached)
     assert [one["kept"] for one in content["limits"]] == [KEPT, FRICTION, EFFORT, 1.0, 1.0]
@@ -174,7 +174,7 @@ def test_the_same_seed_gives_the_same_table(written: Path, tmp_path: Path) -> No
 
 def test_the_twin_plays_a_table_from_where_its_first_row_stands(written: Path) -> None:
     plan = own_plan(written, hrp2.robot())
-    own = design_samples.designed().trajectory().plan()
+    own = design_samples.designed().trajectory.plan()
     assert plan.time == pytest.approx(own.time)
     np.testing.assert_allclose(plan.positions, own.positions, rtol=1e-6, atol=1e-4)
     assert plan.base[0][2] == pytest.approx(own.base[0][2], abs=1e-5)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from plantar.estimation.random_effects import Differences, resolution, share_between
+from plantar.estimation.random_effects import Differences, furthest, resolution, share_between
 
 
 def found(true: float, own: float, groups: int = 3, draws: int = 150) -> np.ndarray:
@@ -81,3 +81,28 @@ def test_groups_that_are_known_exactly_differ_by_what_they_do(apart: float) -> N
     found = share_between([exact], resolution([exact]))
     assert np.isfinite(found).all()
     assert found.share < 1e-4 if apart == 0 else apart / 3 < found.share < 2 * apart
+
+
+def test_one_group_beside_the_weighted_mean_of_the_others() -> None:
+    """Of groups that are known each by itself: the odd one less the others' mean, weighted by how well each is known
+    and how far they differ; whichever group is called the first."""
+    shares = np.array([0.010, -0.004, 0.002, 0.150, 0.006])
+    own = np.array([0.010, 0.004, 0.020, 0.008, 0.015]) ** 2
+    others = np.delete(np.arange(5), 3)
+    for first in range(5):
+        order = [first, *(each for each in range(5) if each != first)]
+        covariance = np.diag(own[order[1:]]) + own[first]
+        odd = furthest(Differences(shares[order[1:]] - shares[first], covariance), 0.05, 3.0)
+        assert odd is not None
+        assert order[odd.place] == 3
+        weight = 1 / (own[others] + odd.apart**2)
+        assert odd.share == pytest.approx(0.150 - np.average(shares[others], weights=weight), rel=1e-9)
+        assert odd.std == pytest.approx(np.sqrt(1 / weight.sum() + own[3] + odd.apart**2), rel=1e-9)
+    assert furthest(Differences(shares[1:] - shares[0], np.diag(own[1:]) + own[0]), 0.2, 3.0) is None
+    odd = furthest(Differences(shares[1:] - shares[0], np.diag(own[1:]) + own[0]), 0.0, 3.0)
+    assert odd is not None
+    for sure, told in ((0.99, True), (1.01, False)):
+        again = furthest(
+            Differences(shares[1:] - shares[0], np.diag(own[1:]) + own[0]), 0.0, sure * odd.share / odd.std
+        )
+        assert (again is not None) == told

@@ -11,12 +11,14 @@ from plantar.estimation.blocks import Block, StanceRows
 from plantar.estimation.linear import (
     effect_of,
     fit_blocks,
+    fits_of_halves,
     influences_of,
     information_inverse,
     least_left,
 )
+from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.residual_covariance import interval95
-from plantar.estimation.stance_least_squares import fit_stances
+from plantar.estimation.stance_least_squares import fit_stances, jackknife
 from plantar.estimation.stance_problem import StanceProblem
 
 VALUES, ARM, ROWS = np.array([450.0, 20.0]), 0.02, 40
@@ -277,3 +279,42 @@ def test_what_a_further_column_leaves_at_least() -> None:
         left = np.linalg.lstsq(np.hstack([rows, each]), response)[1]
         assert least == pytest.approx(left[0], rel=1e-9)
         assert least <= fit_blocks(wider).squares
+
+
+def test_what_was_known_of_a_coefficient_draws_it_to_zero() -> None:
+    """By the shares of both variances; the other values follow, as far as in a fit without the column."""
+    blocks = [walk(seed) for seed in range(3)]
+    problem = StanceProblem.drawn_together(blocks)
+    free = problem.solve().values
+    own = jackknife(problem.without_each_stance)[0][2, 2]
+    bare = [replace(block, common_nuisance=None) for block in blocks]
+    never = StanceProblem.of(bare, problem.prior).solve().values
+    for spread in (0.0, np.sqrt(own), 3 * np.sqrt(own), np.inf):
+        keep = 1.0 if np.isinf(spread) else spread**2 / (spread**2 + own)
+        fit = fit_blocks([replace(block, common_spread=np.array([spread])) for block in blocks])
+        assert fit.common_nuisance == pytest.approx([keep * free[2]], rel=1e-9, abs=1e-15)
+        assert fit.values == pytest.approx(keep * free[:2] + (1 - keep) * never, rel=1e-9)
+
+
+def test_halves_are_fitted_each_alone() -> None:
+    """Of five stances the first two and the last three, by number and not by row."""
+    block = replace(
+        walk(3, stances=5), nuisance=orthonormal(np.random.default_rng(0).normal(size=(5 * ROWS, 1)))
+    )
+    order = np.random.default_rng(1).permutation(5 * ROWS)
+    shuffled = block.part(order)
+    np.testing.assert_array_equal(shuffled.response, block.response[order])
+    assert shuffled.stances is not None
+    assert block.stances is not None
+    np.testing.assert_array_equal(shuffled.stances.weight, block.stances.weight[order])
+    for rows, half in zip(np.split(np.arange(5 * ROWS), [2 * ROWS]), fits_of_halves(block), strict=True):
+        alone = Block(
+            label=block.label,
+            regressor=block.regressor[rows],
+            response=block.response[rows],
+            period=block.period,
+            nuisance=orthonormal(block.nuisance[rows]),
+            stances=StanceRows(block.stances.number[rows], block.stances.weight[rows]),
+            common_nuisance=block.common_nuisance[rows],
+        )
+        np.testing.assert_allclose(half.values, fit_stances([alone]).values, rtol=1e-9)

@@ -35,7 +35,7 @@ def row(name: str, value: float | None, verdict: str = "usable", **more: object)
         "name": name,
         "value": value,
         "verdict": verdict,
-        "unit": "N.m",
+        "unit": {"stiffness": "N.m/rad", "damping": "N.m.s/rad"}.get(name, "N.m"),
     } | more
 
 
@@ -61,15 +61,15 @@ K = row("stiffness", 400.0)
         (row("damping", 0.0), 0.8, True, ["the identified damping 0 is not positive, and a foot would never come to "
                                           "rest; exported as K x 2 ms"]),
         (row("damping", 5.0, "weak", interval95=[3.0, 7.0]), 5.0, False,
-         ["the damping is weak (5, 95 % from 3 to 7 N·m)"]),
+         ["the damping is weak (5, 95 % from 3 to 7 N·m·s/rad)"]),
         (row("damping", 5.0, "unidentifiable", interval95=[-3.0, 7.0]), 0.8, True,
-         ["the damping is unidentifiable (5, 95 % from -3 to 7 N·m); exported as K x 2 ms = 0.8"]),
+         ["the damping is unidentifiable (5, 95 % from -3 to 7 N·m·s/rad); exported as K x 2 ms = 0.8"]),
         (row("damping", 5.0, "unidentifiable", interval95=[0.81, 7.0]), 0.81, True,
-         ["the damping is unidentifiable (5, 95 % from 0.81 to 7 N·m); exported as the low end = 0.81"]),
+         ["the damping is unidentifiable (5, 95 % from 0.81 to 7 N·m·s/rad); exported as the low end = 0.81"]),
         (row("damping", 0.5, "unidentifiable", interval95=[-1.0, 0.79]), 0.79, True,
-         ["the damping is unidentifiable (0.5, 95 % from -1 to 0.79 N·m); exported as the high end = 0.79"]),
+         ["the damping is unidentifiable (0.5, 95 % from -1 to 0.79 N·m·s/rad); exported as the high end = 0.79"]),
         (row("damping", -5.0, "unidentifiable", interval95=[-7.0, -1.0]), 0.8, True,
-         ["the damping is unidentifiable (-5, 95 % from -7 to -1 N·m); exported as K x 2 ms = 0.8"]),
+         ["the damping is unidentifiable (-5, 95 % from -7 to -1 N·m·s/rad); exported as K x 2 ms = 0.8"]),
     ],
 )  # fmt: skip
 def test_a_damping_that_logs_do_not_show(

@@ -56,6 +56,33 @@ def test_no_target_holds_an_unidentifiable_damping(target: str, feet: dict[str, 
     assert not any(f"{9.87654 * scale:.6g}" in line for line in held)
 
 
+@pytest.mark.parametrize("target", ["mjcf", "yaml", "randomization", "openhrp"])
+def test_an_interval_without_an_end_is_told_as_it_is(
+    target: str, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    """JSON holds an end that is nowhere as null: z of sensors that may read half of the load."""
+    made = copy.deepcopy(feet)
+    for row in made["parameters"]:
+        if row["name"] == "stiffness":
+            row.update(interval95=[row["value"] / 3, None], verdict="unidentifiable")
+    file = tmp_path / "result.json"
+    file.write_text(json.dumps(made))
+    said = [note.text for note in export(file, target, tmp_path / "a") if note.code == "export_verdict"]
+    assert any(text.startswith("left pitch") and "to inf N" in text for text in said)
+    assert not any(text.startswith("left z: the stiffness") for text in said), "it stays rigid"
+
+
+@pytest.mark.parametrize(("place", "unit"), [(0, "N.m/deg"), (3, "N.m/rad")])
+def test_a_number_in_another_unit_is_refused(
+    place: int, unit: str, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    made = copy.deepcopy(feet)
+    usual = made["parameters"][place]["unit"]
+    made["parameters"][place]["unit"] = unit
+    with pytest.raises(ExportError, match=rf"value '{unit}': left .*: the unit of .* \(valid: {usual}\)"):
+        export(made, "openhrp", tmp_path / "a")
+
+
 def _broken(feet: dict[str, Any], **changes: Any) -> dict[str, Any]:
     made = copy.deepcopy(feet)
     for row in made["parameters"]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -257,6 +258,18 @@ def test_real_recordings_raise_no_fatal_alarm(shared_data: Path) -> None:
 
 def test_of_a_log_in_another_unit_of_time_only_that_is_said(robot: RobotModel, log: MotionLog) -> None:
     assert names_of(check_log(robot, milliseconds(swapped(log)))) == ["time_unit"]
+
+
+@pytest.mark.parametrize(("unit", "count"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9), (None, 1e12)])
+@pytest.mark.parametrize("rate", [50.0, 100.0, 1000.0])
+def test_the_unit_of_time_is_told_with_the_line_that_reads_it(
+    robot: RobotModel, log: MotionLog, unit: str | None, count: float, rate: float
+) -> None:
+    time = 1.7e9 * (unit is not None) + np.arange(len(log)) / rate
+    (found,) = check_log(robot, MotionLog(log.name, count * time, log.columns))
+    lines = [f"`columns: {{time: {{from: time, unit: {unit}}}}}`"] if unit is not None else []
+    assert re.findall(r"`.*?`", found.text) == lines
+    assert found.fatal
 
 
 @pytest.mark.parametrize("share", [0.3, 0.5])

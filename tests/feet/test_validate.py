@@ -118,3 +118,14 @@ def test_a_log_that_was_fitted_is_no_unseen_one(robot: RobotModel, name: str, to
     given = replace(log, name=name, sha256="2" * 64 if name == "b" else log.sha256)
     _, notes = scored_feet(found, robot, [given])
     assert [note.text.split(":")[0] for note in notes if note.code == "seen"] == [name] * told
+
+
+def test_a_result_of_another_robot_is_told(robot: RobotModel) -> None:
+    """Its feet may have the same names, and its stiffness says nothing of these."""
+    log = record(sway("a", duration=12.0))
+    found = identify_feet(robot, [log], settings=LINEAR)
+    for name, told in ((robot.name, False), ("another", True)):
+        _, notes = scored_feet(replace(found, robot=name), robot, [log])
+        texts = [note.text for note in notes if note.code == "other_robot"]
+        assert bool(texts) == told
+        assert all(f"the result is of 'another', the robot file of '{robot.name}'" in text for text in texts)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from bush_data_sets import (
     PERIOD,
@@ -308,3 +309,24 @@ def test_landings_that_the_air_has_led_to_are_kept_where_they_gain_a_hundredth(
     rests: Any = [SimpleNamespace(squares=1.0), SimpleNamespace(squares=squares)]
     problem: Any = None
     assert _onward(problem, rests) is rests[chosen]
+
+
+def test_each_parameter_has_the_freedom_of_its_own_interval() -> None:
+    fit = ModelFit(
+        model=MODELS["elastoplastic"],
+        values=np.array([450.0, 20.0, 5.0]),
+        shape=np.array([0.01]),
+        covariance=np.diag([4.0, 1.0, 0.25, 1e-6]),
+        freedom=np.array([3.0, 8.0, 30.0, 5.0]),
+        white_std=np.zeros(4),
+        offsets={},
+        offset_std={},
+        initial_states={},
+        residuals={},
+        limits=np.zeros((2, 1)),
+        cutoff=5.0,
+        shared_offset=False,
+    )
+    told = {"stiffness": (450.0, 2.0, 3), "damping": (20.0, 1.0, 8), fit.names[3]: (0.01, 1e-3, 5)}
+    for name, (value, std, freedom) in told.items():
+        assert fit.interval95(name) == pytest.approx(stats.t.interval(0.95, freedom, value, std), rel=1e-6)

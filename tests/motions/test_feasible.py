@@ -9,7 +9,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from plantar.contact.balance import Balance
 from plantar.errors import MotionError
+from plantar.motions import feasible
 from plantar.motions.body import Body
 from plantar.motions.feasible import check
 from plantar.twin.robots import hrp2
@@ -71,3 +73,19 @@ def test_legs_whose_joints_follow_others_are_refused() -> None:
     )
     with pytest.raises(MotionError, match=r"not for LLEG_JOINT3 \(valid: legs without <mimic>\)"):
         Body(bound)
+
+
+def test_the_support_that_is_nearest_to_falling_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a walk: 60, 2 and 80 mm inside of the sole that stands."""
+    square = {"left": np.array([[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]])}
+    supports = [
+        Balance("walk", np.array([second]), np.array([[x, 0.0]]), square)
+        for second, x in ((0.0, 0.04), (1.0, 0.098), (2.0, 0.02))
+    ]
+    for name, found in (("_check_limits", None), ("_check_torques", None), ("configurations", ())):
+        monkeypatch.setattr(feasible, name, lambda *_, found=found: found)
+    monkeypatch.setattr(feasible, "_supports", lambda *_: supports)
+    with pytest.raises(MotionError, match=r"within 2\.0 mm"):
+        check(None, None)  # type: ignore[arg-type]
+    del supports[1]
+    assert check(None, None) is supports[0]  # type: ignore[arg-type]

@@ -80,7 +80,20 @@ DESIGNED_MOTIONS = (
         "key=lambda way: -way.least)[:FOLLOWED]", QUICK,
     ),
     Mutant(
-        "design/known.py", "a weak stiffness is no softer", "else SPRING * low", "else low", ("design/test_known.py",),
+        "design/known.py", "a weak stiffness is no softer", "return SPRING * low, high", "return low, high",
+        ("design/test_known.py",),
+    ),
+    Mutant(
+        "design/known.py", "an element counts as spring", "+ sure - element[", "+ sure - 0 * element[",
+        ("design/test_known.py",),
+    ),
+    Mutant(
+        "design/rehearsals/attempt.py", "joints move no less", "SMALLER * min(self.others, self.reach.used_over_none",
+        "SMALLER * max(self.others, self.reach.used_over_none", ("design/test_rehearsals.py",),
+    ),
+    Mutant(
+        "design/writing/foretold.py", "what the first motion showed is weak", "if weak and (foot, axis) in before:",
+        "if weak and not before:", ("design/test_foretold.py",),
     ),
     Mutant(
         "design/search.py", "all beginnings have the same frequencies",

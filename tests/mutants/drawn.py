@@ -120,7 +120,7 @@ EXCLUSION = (
 
 FIT = (
     Mutant(
-        "feet/fit/vertical_stiffness.py", "the feet's likeness without its square",
+        "feet/fit/compliances.py", "the feet's likeness without its square",
         "0.25 * (1 - gain) ** 2 *", "0.25 * (1 - gain) *",
     ),
     Mutant(

@@ -66,10 +66,10 @@ DRAWN_ONCE_MORE = (
         "if used.sum() < 1000:",
     ),
     Mutant(
-        "feet/fit/vertical_stiffness.py",
+        "feet/fit/compliances.py",
         "a deviation for a variance",
-        "prior = (ALIKE * self.total) ** 2",
-        "prior = ALIKE * self.total",
+        "prior = (self.alike * self.total) ** 2",
+        "prior = self.alike * self.total",
     ),
     Mutant(
         "feet/foot_fit.py",

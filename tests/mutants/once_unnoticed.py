@@ -125,4 +125,133 @@ NUMBERS_SHOWN = (
     ),
 )  # fmt: skip
 
-ONCE_UNNOTICED = (*INTERVALS, *GUARDS, *NUMBERS_SHOWN)
+DRAWN_BLINDLY = (
+    Mutant(
+        "cli/diagnose.py", "a share of 5 % and less is not said",
+        "if share > 0.005)",
+        "if share > 0.05)",
+        ("cli/test_printed_numbers.py",),
+    ),
+    Mutant(
+        "cli/fleet/report.py", "quiet prints",
+        "    elif not quiet:\n        print_alarms",
+        "    else:\n        print_alarms",
+        ("cli/test_fleet_numbers.py",),
+    ),
+    Mutant(
+        "robot_guess/wrench.py", "most signs turned for fewest",
+        "sum(seat.sign < 0 for",
+        "sum(seat.sign > 0 for",
+        ("robot_guess/test_wrench.py",),
+    ),
+    Mutant(
+        "contact/slip_indicator.py", "turns in the air are twists",
+        "known = np.asarray(standing & np.isfinite(heading))",
+        "known = np.asarray(np.isfinite(heading))",
+        ("contact/test_slip_indicator.py",),
+    ),
+    Mutant(
+        "contact/deflection.py", "onto the sole by a roll the other way",
+        "cr * y + sr * level",
+        "cr * y - sr * level",
+        ("contact/test_deflection.py",),
+    ),
+    Mutant(
+        "contact/phases.py", "phases split where support and reason change at once",
+        "!= 0) | (np.diff(self.code)",
+        "!= 0) & (np.diff(self.code)",
+        ("contact/test_phases.py",),
+    ),
+    Mutant(
+        "report/live.py", "time among the values of a plot's scale",
+        "float(columns[1:].min()), float(",
+        "float(columns.min()), float(",
+        ("report/test_live.py",),
+    ),
+    Mutant(
+        "report/charts/loop.py", "loops of all feet in one chart",
+        "for track in tracks if track.foot == foot]",
+        "for track in tracks]",
+        ("report/charts/test_loop.py",),
+    ),
+    Mutant(
+        "report/page.py", "scripts for styles in the policy",
+        "content_policy(script_texts, style_texts),",
+        "content_policy(style_texts, script_texts),",
+        ("report/test_report.py",),
+    ),
+    Mutant(
+        "whole_body/scores.py", "a joint's residuals without its name",
+        'return self.axis or self.joint or ""',
+        'return self.axis or ""',
+        ("whole_body/test_scores.py",),
+    ),
+    Mutant(
+        "model_selection/model_fit.py", "the first parameter's freedom",
+        "float(self.freedom[place]))",
+        "float(self.freedom[0]))",
+        ("model_selection/test_model_fit.py",),
+    ),
+    Mutant(
+        "motions/feasible.py", "the best support of a walk",
+        "balance = min(_supports",
+        "balance = max(_supports",
+        ("motions/test_feasible.py",),
+    ),
+    Mutant(
+        "logs/readers/robot_logger.py", "chunks of a name of any size",
+        ' or math.prod(source.chunks or ()) > NAME_LIMIT:\n        raise ValueError("a name',
+        ':\n        raise ValueError("a name',
+        ("logs/readers/test_read_limit.py",),
+    ),
+    Mutant(
+        "logs/readers/tables/csv_text.py", "blocks of the last line let go",
+        "while held - len(behind[0]) >= LINE_LIMIT",
+        "while held > LINE_LIMIT",
+        ("logs/readers/test_csv_text.py",),
+    ),
+    Mutant(
+        "logs/readers/tables/csv_text.py", "what is inside the inflater is lost",
+        "if text := inflater.flush():",
+        'if text := b"":',
+        ("logs/readers/test_csv_text.py",),
+    ),
+    Mutant(
+        "estimation/random_effects.py", "one group plus each other one",
+        "np.eye(len(shares)) - np.eye(len(shares))[place]",
+        "np.eye(len(shares)) + np.eye(len(shares))[place]",
+        ("estimation/test_random_effects.py",),
+    ),
+    Mutant(
+        "estimation/stance_least_squares.py", "others follow a coefficient the other way",
+        "moved = moved + ((keep - 1)",
+        "moved = moved - ((keep - 1)",
+        ("estimation/test_stance_least_squares.py",),
+    ),
+    Mutant(
+        "estimation/linear.py", "the halves of a walk share stances",
+        "stances[len(stances) // 2 :])",
+        "stances[len(stances) // 3 :])",
+        ("estimation/test_stance_least_squares.py",),
+    ),
+    Mutant(
+        "signals/attitude.py", "the end mirrored at double speed",
+        "rest, rest[::-1]])",
+        "rest, rest[::-2]])",
+        ("signals/test_attitude.py",),
+    ),
+    Mutant(
+        "signals/held.py", "a length that does not fit says nothing",
+        "if np.nanmedian(off[held]) > BEYOND_ROUNDING * np.nanmedian(off[~held]):",
+        "if False:",
+        ("signals/test_held.py",),
+    ),
+    Mutant(
+        "signals/gyroscope_delay.py", "a log's rates differentiated for both",
+        "gyroscope_delay(log.angular_velocity(imu), rates_from",
+        "gyroscope_delay(rates_from(orientation, log.period), rates_from",
+        ("signals/test_gyroscope_delay.py",),
+    ),
+)  # fmt: skip
+
+ONCE_UNNOTICED = (*INTERVALS, *GUARDS, *NUMBERS_SHOWN, *DRAWN_BLINDLY)

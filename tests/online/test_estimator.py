@@ -156,6 +156,18 @@ def test_rates_come_from_the_attitude_where_no_gyroscope_is(robot: RobotModel) -
     expect_truth(FootEstimator(robot, wrench_delay=0.0).replay(log), 2e-3, 1e-2)
 
 
+@pytest.mark.parametrize("gyroscope", [True, False])
+def test_a_quaternion_and_its_negative_are_one_attitude(robot: RobotModel, gyroscope: bool) -> None:
+    log = record(sway(duration=10.0))
+    if not gyroscope:
+        log = without(log, "angular_velocity")
+    names = [f"imu.chest.orientation.{part}" for part in "wxyz"]
+    signs = np.where(np.arange(len(log)) % 3 == 1, -1.0, 1.0)
+    turned = with_columns(log, **{name: signs * log.column(name) for name in names})
+    plain, other = FootEstimator(robot).replay(log), FootEstimator(robot).replay(turned)
+    np.testing.assert_allclose(other.rows, plain.rows, rtol=1e-9, atol=1e-12)
+
+
 def test_a_gyroscope_beside_an_attitude_tells_the_rates(robot: RobotModel) -> None:
     """One that reads nothing leaves the joints' rates alone: they are not the bushes'."""
     log = record(sway(duration=20.0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -72,6 +73,21 @@ def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, r
         assert (turn.inv() * expected).magnitude() == pytest.approx(0.0, abs=1e-6)
         above = turn.apply([0.0, 0.0, live.HEIGHT / 2])
         assert ankle.position == pytest.approx([0.0 + above[0], -0.15 + above[1], 0.03 + above[2]], abs=1e-6)
+
+
+def test_a_plots_scale_holds_its_values_and_a_little_more() -> None:
+    """A band from 4 to 8 over a second that is long after the log's first; then a line at zero, of another log."""
+    made = SimpleNamespace(gui=SimpleNamespace(add_uplot=lambda **given: SimpleNamespace(**given)))
+    plot = live._Plot(made, "K", lines=3)  # type: ignore[arg-type]
+    for now, values in ((1000.0, (5.0, 4.0, 6.0)), (1002.0, (7.0, 6.0, 8.0))):
+        plot.add(now, *values)
+    assert plot._plot.scales["x"]["range"] == pytest.approx((1000.0, 1002.0))
+    assert plot._plot.scales["y"]["range"] == pytest.approx((3.6, 8.4))
+    plot.add(1000.0 + live.LOOKED_BACK + 1.0, 5.0, 4.5, 5.5)
+    assert plot._plot.scales["x"]["range"][0] == 1002.0, "what is longer ago is let go"
+    plot.add(0.0, 0.0, 0.0, 0.0)
+    assert plot._plot.scales["x"]["range"] == pytest.approx((0.0, 1.0))
+    assert plot._plot.scales["y"]["range"] == pytest.approx((-1.0, 1.0))
 
 
 def test_a_browser_draws_it(robot: RobotModel, replay: Replay, browser: Any) -> None:

@@ -49,6 +49,17 @@ def test_a_plain_one_is_read() -> None:
         ('"1e1"', '"${mass}"', "is xacro that was not expanded (valid: the URDF that `xacro robot.urdf"),
         ('<link name="foot"/>', '<xacro:foot xmlns:xacro="http://www.ros.org/wiki/xacro"/>', "is xacro"),
         ("robot", "sdf", "its root is <sdf>"),
+        ('xyz=" 0 0  -1"', 'xyz="0 0 -450"', "joint 'ankle' is 20 m away or more; are these millimetres?"),
+        ('xyz="0 0 .1"', 'xyz="0 0 100"', "value '0 0 100': link 'trunk' is 20 m away or more"),
+        ("</robot>", "", "is not a readable URDF: no element found: line 8, column 0"),
+        ('<link name="foot"/>', '<link name="foot"/><link name="foot"/>', "link 'foot' is there twice"),
+        ("</robot>", '<joint name="ankle" type="fixed"/></robot>', "joint 'ankle' is there twice"),
+        ('<child link="foot"/>', '<child link="toe"/>', "joint 'ankle' has the child 'toe' (valid: the name of a link"),
+        ('<parent link="trunk"/>', "", "joint 'ankle' has the parent 'None'"),
+        ('<limit lower="-1" upper="1" effort="9" velocity="9"/>', "", "revolute joint 'ankle' has no limits"),
+        ("</robot>", '<link name="hat"/></robot>', "'trunk' and 'hat' hang on no joint (valid: one root link)"),
+        ("</robot>", '<joint name="loop" type="fixed"><parent link="trunk"/><child link="foot"/></joint></robot>',
+         "link 'foot' hangs on two joints, 'ankle' and 'loop'"),
     ],
 )  # fmt: skip
 def test_what_would_be_left_out_is_named(old: str, new: str, told: str) -> None:

@@ -113,6 +113,44 @@ def test_what_is_no_biped_is_refused_in_one_line(tmp_path: Path, urdf: Path, rea
     assert str(urdf) in str(caught.value)
 
 
+@pytest.mark.parametrize("height", [0.0, 0.8, 1.5])
+def test_a_robot_that_is_fixed_to_the_world_stands_as_it_does_without(tmp_path: Path, height: float) -> None:
+    """As many URDFs for simulators: the root link is where the floor is, not the trunk."""
+    root = pin.buildModelFromXML(URDF).frames[1].name
+    hung = f'<link name="world"/><joint name="to_world" type="fixed"><origin xyz="0 0 {height}"/>'
+    hung += f'<parent link="world"/><child link="{root}"/></joint></robot>'
+    free, fixed = (guessed(tmp_path / name, record(LARGE), urdf=urdf)[1].replace(name, "")
+                   for name, urdf in (("free", URDF), ("fixed", URDF.replace("</robot>", hung))))  # fmt: skip
+    assert fixed == free
+
+
+def test_a_robot_without_weight_is_told_of_the_urdf_not_of_a_file_that_is_gone(tmp_path: Path) -> None:
+    with pytest.raises(RobotError, match=r"biped\.urdf: urdf: its links weigh nothing"):
+        guessed(tmp_path, record(LARGE), urdf=re.sub('mass value="[^"]*"', 'mass value="0"', URDF))
+
+
+def test_toes_that_nothing_drives_and_nobody_records_are_no_feet(tmp_path: Path) -> None:
+    """Before there is a log they are what legs end in; one that holds all of the leg but them says otherwise."""
+    plain, text = guessed(tmp_path / "plain", record(LARGE))
+    toes = ""
+    for foot in plain.feet.values():
+        toe = foot.ankle + "_toe"
+        toes += f'<link name="{toe}"/><joint name="{toe}s" type="revolute"><parent link="{foot.ankle}"/>'
+        toes += f'<child link="{toe}"/><origin xyz="0.1 0 -0.05"/><axis xyz="0 1 0"/>'
+        toes += '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+    urdf = URDF.replace("</robot>", toes + "</robot>")
+    assert {foot.ankle[-3:] for foot in guessed(tmp_path / "blind", urdf=urdf)[0].feet.values()} == {"toe"}
+    found, told = guessed(tmp_path / "toes", record(LARGE), urdf=urdf)
+    assert [foot.ankle for foot in found.feet.values()] == [foot.ankle for foot in plain.feet.values()]
+    assert told.replace("toes", "plain") == text
+    driven = record(LARGE)
+    read = driven.with_columns(
+        {f"joint.{foot.ankle}_toes.position": 0 * driven.time for foot in plain.feet.values()}
+    )
+    robot, _ = guessed(tmp_path / "driven", read, urdf=urdf)
+    assert {foot.ankle[-3:] for foot in robot.feet.values()} == {"toe"}
+
+
 def test_a_hand_is_not_taken_for_a_foot() -> None:
     """With all joints at 0 one hand of this model is lower than its feet along the root link's z axis."""
     biped = find_biped(UrdfTree.load(HUMAN), model(HUMAN))

@@ -95,3 +95,20 @@ def test_gyroscope_and_accelerometer_share_at_0_03_hz() -> None:
         up = Rotation.from_quat(found, scalar_first=True).inv().apply([0.0, 0.0, 1.0])
         shares.append((up[inside, 0] @ lean[inside]) / (lean[inside] @ lean[inside]))
     assert shares == pytest.approx([1.0, 0.5, 0.0], abs=0.03)
+
+
+def test_one_sample_is_what_its_accelerometer_says() -> None:
+    lean = Rotation.from_euler("yx", [0.2, -0.1])
+    proper = lean.inv().apply([[0.0, 0.0, 9.81]])
+    found = attitude_from_inertial(np.zeros((1, 3)), proper, 0.005)
+    up = Rotation.from_quat(found[0], scalar_first=True).inv().apply([0.0, 0.0, 1.0])
+    np.testing.assert_allclose(up, proper[0] / 9.81, atol=1e-12)
+
+
+def test_time_runs_either_way() -> None:
+    """Nothing in it is told earlier from later: a log played backwards has the same tilts backwards, at both ends."""
+    rates, acceleration, _, period = inertial(seed=3, duration=100.0)
+    acceleration = acceleration + np.random.default_rng(0).normal(0, 0.5, acceleration.shape)
+    found = attitude_from_inertial(rates, acceleration, period)
+    back = attitude_from_inertial(-rates[::-1], acceleration[::-1], period)[::-1]
+    assert tilt_error(found, back).max() < 1e-6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from plantar.logs.motion_log import MotionLog
 from plantar.signals.gyroscope_delay import (
@@ -60,6 +61,24 @@ def test_a_delay_of_quick_turns_is_found_beyond_its_first_order(late: float) -> 
 
 def test_a_log_without_orientation_or_gyroscope_tells_nothing() -> None:
     assert log_gyroscope_delay(MotionLog("empty", TIME, {}), "chest") is None
+
+
+def test_a_log_tells_what_its_columns_tell() -> None:
+    """Rates that were read 20 ms late beside an orientation that sways about two axes."""
+    sways = [0.1 * np.sin(2 * np.pi * hertz * TIME) for hertz in (0.4, 0.7)]
+    turns = Rotation.from_euler("yx", np.column_stack(sways))
+    rates = np.gradient(turns.as_matrix(), PERIOD, axis=0)
+    skew = np.einsum("nji,njk->nik", turns.as_matrix(), rates)
+    body = np.column_stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]])
+    columns = {
+        f"imu.chest.orientation.{axis}": part for axis, part in zip("xyzw", turns.as_quat().T, strict=True)
+    }
+    late = np.roll(body, 4, axis=0)
+    late[:4] = late[4]
+    columns |= {f"imu.chest.angular_velocity.{axis}": part for axis, part in zip("xyz", late.T, strict=True)}
+    found = log_gyroscope_delay(MotionLog("late", TIME, columns), "chest")
+    assert found is not None
+    assert found.late == pytest.approx(0.02, abs=5e-4)
 
 
 @pytest.mark.parametrize(("late", "std", "told"), [

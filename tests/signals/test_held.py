@@ -121,3 +121,32 @@ def test_a_sensor_without_noise_whose_robot_rests_is_not_held(start: float) -> N
         stuck = resting.copy()
         stuck[frozen] = stuck[frozen.start]
         np.testing.assert_array_equal(np.flatnonzero(held_samples(stuck, PERIOD)), np.arange(2000)[frozen])
+
+
+def test_a_foot_in_the_air_comes_back_to_its_zeros() -> None:
+    """A twin's sensor reads the same values in each swing; one that freezes reads them once."""
+    swings = (np.mod(TIME, 4.0) > 3.0) & (TIME < 15.0)
+    names = [f"wrench.left.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+    random = np.random.default_rng(2)
+    columns = {name: WAVE + random.normal(0, 1.0, TIME.size) for name in names}
+    for place, name in enumerate(names):
+        columns[name][swings] = 0.7 - place
+    log = MotionLog("swings", TIME, columns)
+    assert without_held(log) is log
+    stuck = (TIME > 17.0) & (TIME < 18.0)
+    for name in names:
+        columns[name][stuck] = columns[name][stuck][0]
+    emptied = without_held(MotionLog("stuck", TIME, columns))
+    for name in names:
+        np.testing.assert_array_equal(np.isnan(emptied.column(name)), stuck)
+
+
+def test_one_number_of_an_orientation_that_stops_spoils_its_length() -> None:
+    leans = 0.3 * np.sin(np.outer(TIME, [1.0, 1.4, 0.7]) + [0.0, 1.0, 2.0])
+    numbers = Rotation.from_euler("xyz", leans).as_quat()
+    names = [f"imu.chest.orientation.{axis}" for axis in "xyzw"]
+    still = (TIME > 5) & (TIME < 7)
+    numbers[still, 1] = numbers[still, 1][0]
+    emptied = without_held(MotionLog("one", TIME, dict(zip(names, numbers.T, strict=True))))
+    np.testing.assert_array_equal(np.isnan(emptied.column(names[1])), still)
+    assert not np.isnan(emptied.stack([names[0], names[2], names[3]])).any()

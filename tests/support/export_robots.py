@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from plantar.conventions import rotation_from_rpy
+from plantar.conventions import DAMPING_UNIT, STIFFNESS_UNIT, rotation_from_rpy
 
 # foot -> axis -> K, C, offset
 TRUTH: dict[str, dict[str, tuple[float, float, float]]] = {
     "left": {"z": (40000.0, 400.0, 20.0), "pitch": (480.0, 24.27, 5.66), "roll": (352.0, 28.15, -4.12)},
     "right": {"pitch": (434.0, 15.89, 4.79), "roll": (323.0, 17.53, -0.05)},
 }
+UNITS = {"stiffness": STIFFNESS_UNIT, "damping": DAMPING_UNIT}
 CENTRE = np.array([0.01, 0.0, -0.08])  # of the bush in the ankle
 RPY = {"left": np.array([0.0, 0.0, 0.3]), "right": np.zeros(3)}
 SOLE_Z = -0.11
@@ -30,7 +31,7 @@ def result(urdf: Path, robot: str = "biped") -> dict[str, Any]:
     for foot, axes in TRUTH.items():
         for axis, (k, c, o) in axes.items():
             for name, value in (("stiffness", k), ("damping", c)):
-                parameters.append({"foot": foot, "axis": axis, "name": name, "unit": "N.m/rad", "value": value,
+                parameters.append({"foot": foot, "axis": axis, "name": name, "unit": UNITS[name][axis], "value": value,
                                    "std": 0.01 * value, "interval95": [0.98 * value, 1.02 * value],
                                    "verdict": "usable"})  # fmt: skip
             for motion, shift in (("sway", -0.5), ("squat", 0.5)):

@@ -56,6 +56,20 @@ def test_errors_of_an_axis() -> None:
     assert cross.zero_mean_abs == pytest.approx(np.mean(np.abs(np.array([-4, 2, 3, 4]) - 1.75)))
 
 
+def test_residuals_are_named_by_axis_or_joint() -> None:
+    for places in (
+        (Place(0, "N", axis="force.x"), Place(1, "N.m", axis="torque.y")),
+        (Place(0, "N.m", joint="knee"), Place(1, "N.m", joint="hip")),
+    ):
+        table = scored(FIT, [SEEN], [UNSEEN], places)[1]  # type: ignore[arg-type]
+        names = [place.axis or place.joint for place in places]
+        assert table.column_names[3:] == [
+            f"{name}.{kind}" for name in names for kind in ("measured", "predicted")
+        ]
+        assert table[f"{names[1]}.measured"].to_pylist() == [10.0, 12.0, 8.0, 10.0, 10.0, 10.0, 10.0, 14.0]
+        assert table["role"].to_pylist() == ["fit"] * 4 + ["validate"] * 4
+
+
 def test_joints_are_scored_also_all_together() -> None:
     found = rows((Place(0, "N.m", joint="knee"), Place(1, "N.m", joint="hip")))
     whole = found["seen", "all"]

@@ -66,7 +66,7 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot)
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
       shaking_(model.weight),
-      edge_(model.weight),
+      edge_(model.weight, middle_depth_),
       axes_{AxisRegression(prior_of(model, foot, 0, foot.slip_angle[0])),
             AxisRegression(prior_of(model, foot, 1, foot.slip_angle[1]))},
       memories_{MemoryWatch(prior_of(model, foot, 0, SUSPECTED_ANGLE)),

@@ -116,7 +116,7 @@ def run(
     found = design_motion(model, settings, earlier, step)
     step("write")
     content = write_design(found, out, rate, to or (), approach)
-    write_plan_scene(found.robot, found.trajectory().plan(), found.nominal.bushes, out.with_suffix(".html"))
+    write_plan_scene(found.robot, found.trajectory.plan(), found.nominal.bushes, out.with_suffix(".html"))
     end_progress(quiet)
     if json:
         print(dump_json(content), end="")

@@ -48,7 +48,12 @@ def information(reach: Reach, coefficients: Array) -> Array:
     An offset, a drift in a line and slow cosines, and an element with hysteresis are eliminated, as `identify feet`
     does: a lean that is held for half a minute shows nothing.
     """
-    bent, rate = reach.of(reach.firm_deflection, coefficients), reach.of(reach.firm_rate, coefficients)
+    bent, rate = (reach.of(part, coefficients) for part in (reach.firm_deflection, reach.firm_rate))
+    return _information(reach, bent, rate)
+
+
+def _information(reach: Reach, bent: Array, rate: Array) -> Array:
+    """The same of bends and rates (..., S, feet, 2, M)."""
     size = bent.shape[-1]
     columns = np.empty((*bent.shape[:-1], 4, size))
     columns[..., 0, :], columns[..., 1, :] = bent, rate
@@ -68,23 +73,27 @@ def information(reach: Reach, coefficients: Array) -> Array:
     )
 
 
-def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -> Array:
+def half_widths(
+    reach: Reach, coefficients: Array, known: Array | float = 0.0, late: Array | None = None
+) -> Array:
     """95 % half widths [share of the value] of stiffness and damping, (..., S, feet, 2, 2).
 
     `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
     a spring that slips for a part of the stiffness: the motion's own widths grow steeply. What the delay of the
-    sensors is unsure by, times the stiffness of spring and element, the damping is unsure by as well.
+    sensors is unsure by, `late` (...) [s] where that was worked out before, times the stiffness of spring and element,
+    the damping is unsure by as well.
     """
-    bend = np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2
+    bent, rate = (reach.of(part, coefficients) for part in (reach.firm_deflection, reach.firm_rate))
+    bend = np.ptp(bent, axis=-1) / 2
     missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
-    found = information(reach, coefficients) / missing ** (2 * STEEP) + known
+    found = _information(reach, bent, rate) / missing ** (2 * STEEP) + known
     scale = np.sqrt(np.maximum(np.einsum("...ii->...i", found), 1e-12))
     scaled = found / (scale[..., :, None] * scale[..., None, :]) + 1e-9 * np.eye(2)
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale
     values = np.column_stack([reach.stiffness, reach.damping])[:, None, None]
     widths = np.asarray(NORMAL95 * deviations / values)
     firm = reach.stiffness[:, None] + SECANT * reach.element
-    late = np.asarray(delay_half_width(reach, coefficients))[..., None, None]
+    late = np.asarray(delay_half_width(reach, coefficients) if late is None else late)[..., None, None]
     widths[..., 1] = np.hypot(widths[..., 1], (late * firm / reach.damping[:, None])[..., None, :])
     return widths
 
@@ -122,10 +131,11 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
     are `known` from before, what is weak comes first.
     """
-    feet = half_widths(reach, coefficients, known) / WANTED
+    late = delay_half_width(reach, coefficients)
+    feet = half_widths(reach, coefficients, known, late) / WANTED
     feet = feet.reshape(*feet.shape[:-3], -1)
     vertical = vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL
-    delay = np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY)[..., None, None]
+    delay = np.asarray(late / WANTED_DELAY)[..., None, None]
     widths = np.log(np.concatenate([feet, np.broadcast_to(delay, vertical.shape), vertical], axis=-1))
     hopeless = np.inf if np.any(known) else np.log(HOPELESS)
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)

@@ -47,10 +47,17 @@ class Reach:
     where rubber that slips stands beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and
     `wrench_rates` (size, 3, N), of the vertical force [N/s] and of the moments about x and y [N·m/s].
     Limits hold for the plain springs, with what slips added to their torques; intervals come from the others.
+    `element`: stiffness (2,) of what slips beside pitch and roll, where that is known [N·m/rad].
     """
 
     def __init__(
-        self, legs: Legs, robot: LinearRobot, lines: Lines, told: Softness, bushes: Sequence[Softness]
+        self,
+        legs: Legs,
+        robot: LinearRobot,
+        lines: Lines,
+        told: Softness,
+        bushes: Sequence[Softness],
+        element: Array | None = None,
     ) -> None:
         self.lines, self.time, self.bushes, self.feet = (
             lines,
@@ -71,7 +78,7 @@ class Reach:
         }
         # Of what slips beside every spring, by axis: at least the rubber of the rehearsals, which goes with the weight.
         rubber = np.array(preset_named(DEFAULT).slip_torques(legs.body.robot)) / SLIP_ANGLE
-        self.element = np.maximum(told.stiffness * np.array(SHARE), rubber)
+        self.element = np.maximum(told.stiffness * np.array(SHARE) if element is None else element, rubber)
 
         def parts(beside: Array, *names: str) -> list[Array]:
             pitch, roll = (float(value) for value in beside)
@@ -143,10 +150,17 @@ class Reach:
 
     def used_by_kind(self, coefficients: Array) -> Array:
         """How much of its tightest limit of each kind over each bush a motion takes up, (S, KINDS)."""
+        return self._used_by_group(coefficients)[:-1].reshape(-1, len(KINDS))
+
+    def used_over_none(self, coefficients: Array) -> float:
+        """How much of the tightest limit over no bush, of channels and joints, a motion takes up."""
+        return float(self._used_by_group(coefficients)[-1])
+
+    def _used_by_group(self, coefficients: Array) -> Array:
         found = np.zeros(len(self.bushes) * len(KINDS) + 1)
         for side in self._shares(coefficients):
             np.maximum.at(found, self._group, side.max(axis=1))
-        return found[:-1].reshape(-1, len(KINDS))
+        return found
 
     def _joints(self, legs: Legs, robot: LinearRobot) -> list[tuple[Array, Array, Array]]:
         """How far each joint goes and how fast, about standing, and how far and fast it may."""

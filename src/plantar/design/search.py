@@ -140,7 +140,7 @@ class _Climb:
         if self._slope is None:
             beside = self.best + np.diag(SMALL * self._units)
             parts = np.split(beside, range(AT_ONCE, len(beside), AT_ONCE))
-            self._slope = np.concatenate([self._value(part) for part in parts]) - self.least
+            self._slope = np.concatenate(over_cores(self._value, parts)) - self.least
         tried, (rows, left) = self.best, self._close.near(self.best)
         for _ in range(CUTS):
             found = linprog(

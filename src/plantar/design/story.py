@@ -70,7 +70,8 @@ class Design:
     """A motion and what it promises.
 
     `told`: the bush it was made for; `factors`: the range of stiffness it holds for; `rehearsals`: by factor, the told
-    stiffness among them; `pairs` of links that were watched for touching, 0 where the URDF brings no geometry.
+    stiffness among them; `pairs` of links that were watched for touching, 0 where the URDF brings no geometry; `known`:
+    what an earlier result knows.
     """
 
     settings: DesignSettings
@@ -81,10 +82,12 @@ class Design:
     legs: Legs = field(repr=False)
     lines: Lines = field(repr=False)
     coefficients: Array = field(repr=False)
+    trajectory: Trajectory = field(repr=False)
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
     pairs: int
+    known: Known | None = None
 
-    def trajectory(self, share: float = 1.0) -> Trajectory:
+    def gentler(self, share: float) -> Trajectory:
         """The motion with a share of its amplitude."""
         return Trajectory.of("design", self.legs, self.lines, share * self.coefficients)
 
@@ -135,23 +138,37 @@ def design_motion(
     told = Softness.told(robot, stiffness, damping)
     bushes = [told.times(factor) for factor in _rehearsed_at(*factors)]
     before = 0.0 if known is None else known.precision(tuple(legs.bushes))
+    element = None if known is None else known.element
     left = np.full((len(bushes), len(KINDS)), LEFT)
 
     def reach_of(legs: Legs, linear: LinearRobot) -> Callable[[Lines], Reach]:
-        return lambda lines: Reach(legs, linear, lines, told, bushes).held(left)
+        return lambda lines: Reach(legs, linear, lines, told, bushes, element).held(left)
 
     place, lines, found = best_motion(
         [reach_of(*each) for each in stances], settings.duration, settings.criterion, settings.seed, before, progress
     )  # fmt: skip
     legs, linear = stances[place]
     motion = Attempt(
-        Reach(legs, linear, lines, told, bushes),
+        Reach(legs, linear, lines, told, bushes, element),
         lambda limits, start: better_motion(limits, settings.criterion, start, before),
         found,
         _rehearsed_at(*factors),
     )
-    coefficients, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
-    return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
+    coefficients, trajectory, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
+    return Design(
+        settings,
+        robot,
+        told,
+        factors,
+        least,
+        legs,
+        lines,
+        coefficients,
+        trajectory,
+        tuple(rehearsals),
+        pairs,
+        known,
+    )
 
 
 def _stances(robot: RobotModel) -> list[tuple[Legs, LinearRobot]]:

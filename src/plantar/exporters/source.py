@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from plantar.conventions import DAMPING_UNIT, STIFFNESS_UNIT
 from plantar.errors import ExportError
 from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
 from plantar.results.feet import FEET_SCHEMA, FeetResult
 from plantar.results.io import read_result, result_path
 
+UNITS: Mapping[str, Mapping[str, str]] = {"stiffness": STIFFNESS_UNIT, "damping": DAMPING_UNIT}
 SCHEMAS = (FEET_SCHEMA, INERTIA_SCHEMA)
 ResultInput = FeetResult | DynamicsResult | Mapping[str, Any] | str | os.PathLike[str]
 
@@ -32,7 +35,23 @@ def open_result(result: ResultInput) -> tuple[Mapping[str, Any], Path]:
         raise ExportError(
             "a result of this schema cannot be exported", value=str(schema), valid=", ".join(SCHEMAS)
         )
+    rows = result.get("parameters")
+    if schema == FEET_SCHEMA and isinstance(rows, list):
+        result = {**result, "parameters": [_read(row) if isinstance(row, Mapping) else row for row in rows]}
     return result, base
+
+
+def _read(row: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A parameter with open ends of its interval, which JSON holds as null, as numbers; ExportError in another unit."""
+    usual = UNITS.get(str(row.get("name")), {}).get(str(row.get("axis")))
+    if usual is not None and row.get("unit", usual) != usual:
+        what = f"{row.get('foot')} {row.get('axis')}: the unit of the {row.get('name')}"
+        raise ExportError(what, value=str(row["unit"]), valid=usual)
+    ends = row.get("interval95")
+    if not isinstance(ends, list | tuple) or len(ends) != 2:
+        return row
+    low, high = ends
+    return {**row, "interval95": [-math.inf if low is None else low, math.inf if high is None else high]}
 
 
 def robot_model(result: Mapping[str, Any]) -> Mapping[str, Any]:

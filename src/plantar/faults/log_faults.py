@@ -30,6 +30,8 @@ from plantar.signals.thinning import picked
 
 DEGREES = 180 / np.pi
 FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
+QUICKEST, USUAL = 5e-5, 0.05  # s between the samples of robots' logs: one unit alone puts them there
+UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9}  # in a second
 QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
 # Of the weight: a foot that carries so much on average does not stand alone.
 LEAST_PART, MOST_PART = 0.2, 0.85
@@ -75,7 +77,11 @@ def finding_notes(log: MotionLog, findings: Sequence[Finding]) -> list[Note]:
 def _time(log: MotionLog) -> Iterator[Finding]:
     if not FASTEST < log.period < SLOWEST:
         text = f"column 'time': samples are {log.period:g} s apart; is it in another unit?"
-        valid = "valid: seconds; divide milliseconds by 1000 and nanoseconds by 1e9"
+        near = [unit for unit, count in UNITS.items() if QUICKEST <= log.period / count < USUAL]
+        mend = [
+            f"; `columns: {{time: {{from: time, unit: {unit}}}}}` in the robot file reads it" for unit in near
+        ]
+        valid = "valid: seconds" + "".join(mend)
         yield Finding("time_unit", f"{text} ({valid})", True)
     elif log.duration < SHORTEST:
         yield Finding(

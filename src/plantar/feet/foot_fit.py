@@ -23,6 +23,7 @@ from plantar.feet.interval_width.cause import inflated
 from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.spread import PlaceSpread
+from plantar.feet.place.told_exact import as_measured, shown_elsewhere
 from plantar.feet.place.turned_bush import turned_bush_note
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
@@ -37,7 +38,8 @@ ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
 @dataclass(frozen=True)
 class FittedFoot:
     """Both axes of one foot as fitted about its `place`: `fits` by axis, `given_up` with the reasons; the logs without
-    outliers, `ready`, and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero."""
+    outliers, `ready`, and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero, and that the
+    place is `elsewhere` though the robot file calls it exact."""
 
     foot: str
     place: PlaceSpread
@@ -46,6 +48,13 @@ class FittedFoot:
     ready: PreparedLogs
     thin: PreparedLogs
     jumps: Sequence[Note]
+    elsewhere: Note | None = None
+
+    def told(self, note: Note) -> FittedFoot:
+        """The foot with a note more on each axis."""
+        return replace(
+            self, fits={axis: replace(fit, notes=(*fit.notes, note)) for axis, fit in self.fits.items()}
+        )
 
 
 def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
@@ -73,7 +82,11 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
     for axis, fit in fits.items():
         with gives_up(axis, given_up):
             jumps.extend(zero_jumps(thin.fitted, fit, shared))
-    return FittedFoot(foot, place, fits, given_up, ready, thin, jumps)
+    elsewhere = None
+    with gives_up("pitch", given_up):
+        usual = as_measured(ready.robot, foot)
+        elsewhere = shown_elsewhere([*fits.values()], thin.fitted, place, usual, shared)
+    return FittedFoot(foot, place, fits, given_up, ready, thin, jumps, elsewhere)
 
 
 def between_all(feet: Sequence[FittedFoot]) -> Apart:

@@ -11,6 +11,7 @@ from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
 from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
 from plantar.feet.place.spread import PlaceSpread
+from plantar.feet.place.told_exact import as_measured
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.put_right.encoders_of_fits import (
     Late,
@@ -148,12 +149,16 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
         return dict(zip(places, found, strict=True))
 
     found = fit_all(places)
+    exact = {foot: one.elsewhere for foot, one in found.items() if one.elsewhere is not None}
+    places |= {foot: as_measured(ready.robot, foot) for foot in exact}
+    found |= fit_all({foot: places[foot] for foot in exact})
     fits = {foot: [*one.fits.values()] for foot, one in found.items()}
     wider = {
         foot: place.doubted_by([fit for other in fits if other != foot for fit in fits[other]], fits[foot])
         for foot, place in places.items()
     }
-    return found | fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
+    found |= fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
+    return {foot: one.told(exact[foot]) if foot in exact else one for foot, one in found.items()}
 
 
 def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> PreparedLogs:

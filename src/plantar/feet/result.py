@@ -15,6 +15,7 @@ from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.assumptions import assumptions
+from plantar.feet.fit.compliances import share_apart
 from plantar.feet.foot_assessment import FootFit
 from plantar.feet.interval_width.between_recordings import Apart, apart_notes
 from plantar.feet.place.far_arms import far_arms
@@ -40,9 +41,8 @@ def feet_result(
     limits = [row for each in found for row in each.diagnosis]
     feasible = remedies(ready.settings, ready.sensor_delay, robot, ready.fitted)
     parameters, limits = with_remedies([row for each in found for row in each.parameters], limits, feasible)
-    vertical = doubted(
-        hardly_standing(ready.vertical.parameters, ready.fitted), standing_faults(ready.fitted)
-    )
+    heights = ready.vertical.of_feet_that_differ(share_apart(parameters))
+    vertical = doubted(hardly_standing(heights.parameters, ready.fitted), standing_faults(ready.fitted))
     rows = [row for each in found for row in each.validation]
     predictions = {key: value for each in found for key, value in each.predictions.items()}
     return FeetResult(

@@ -22,6 +22,7 @@ from plantar.notes import Note
 from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, ValidationRow
 from plantar.results.feet_rows import LinearEquivalent
 from plantar.results.usage import used_shares
+from plantar.robot.model import RobotModel
 from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
@@ -90,7 +91,15 @@ def scored_feet(
         raise DataError(
             "no log has samples of a standing foot that could be scored (valid: more than 1.3 s of stance)"
         )
-    return rows, [*_seen(found, recordings), *_unscored(rows, recordings, feet)]
+    return rows, [*_of_another(found, robot), *_seen(found, recordings), *_unscored(rows, recordings, feet)]
+
+
+def _of_another(found: FeetResult, robot: RobotModel) -> list[Note]:
+    """A warning where the result and the robot file name different robots."""
+    if found.robot == robot.name:
+        return []
+    text = f"the result is of '{found.robot}', the robot file of '{robot.name}': the errors are those of other feet"
+    return [Note("other_robot", "warning", f"{text}, unless the robot was renamed")]
 
 
 def _seen(found: FeetResult, recordings: Sequence[Recording]) -> list[Note]:

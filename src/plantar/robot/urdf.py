@@ -7,7 +7,6 @@ import math
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import pinocchio as pin
@@ -16,6 +15,7 @@ from plantar.errors import RobotError
 from plantar.files import read_bounded
 
 LIMIT = 64 * 2**20  # bytes
+FARTHEST = 20.0  # m from a joint to the next, or from a link to its centre of mass
 _DECLARES = re.compile(r"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
 TURNING = ("revolute", "continuous", "prismatic")  # joints that have an axis
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -24,7 +24,7 @@ INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 def read_urdf(path: Path) -> str:
     """The text of a URDF, from its trunk on. Raises RobotError where it cannot be read or is no text."""
     try:
-        return _from_trunk(read_bounded(path, LIMIT, RobotError).decode())
+        return from_trunk(read_bounded(path, LIMIT, RobotError).decode())
     except UnicodeDecodeError as error:
         raise RobotError("is not UTF-8 text", path=path, valid="a URDF") from error
 
@@ -37,13 +37,16 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
     """
     if _DECLARES.search(urdf):
         raise RobotError("declares a DOCTYPE or an entity", path=path, valid="plain URDF")
-    with suppress(ET.ParseError):  # Pinocchio reads more than Python does, and says what it cannot read
+    broken = ""
+    try:
         _check(ET.fromstring(urdf), path)
+    except ET.ParseError as error:  # Pinocchio reads more than Python does, but prints what it cannot read
+        broken = str(error)
     root = [pin.JointModelFreeFlyer()] if floating else []
     try:
         return pin.buildModelFromXML(urdf, *root)
     except (ValueError, RuntimeError, IndexError) as error:
-        reason = str(error).splitlines()[0] if str(error) else "unreadable"
+        reason = broken or (str(error).splitlines()[0] if str(error) else "unreadable")
         raise RobotError(f"is not a readable URDF: {reason}", path=path) from error
 
 
@@ -74,22 +77,27 @@ def unknown_link(link: str, model: pin.Model, path: Path) -> RobotError:
     return RobotError(f"link '{link}' is not in the URDF", path=path, valid=valid)
 
 
-def _from_trunk(urdf: str) -> str:
-    """Without a bare link for the world and the floating joint on it: every robot floats unless its file says other."""
-    if "floating" not in urdf or _DECLARES.search(urdf):
+def from_trunk(urdf: str, joint: str = "floating") -> str:
+    """Without a bare link for the world and the `joint` on it: every robot floats unless its file says other.
+
+    On a fixed joint a link of another name is a frame of the trunk's own.
+    """
+    if joint not in urdf or _DECLARES.search(urdf):
         return urdf
     try:
         root = ET.fromstring(urdf)
     except ET.ParseError:
         return urdf
     ends = [end.get("link") for end in root.iterfind("joint/*[@link]")]
-    for joint in root.findall("joint[@type='floating']"):
-        worlds = [parent.get("link") for parent in joint.iterfind("parent")]
+    for own in root.findall(f"joint[@type='{joint}']"):
+        worlds = [parent.get("link") for parent in own.iterfind("parent")]
         for link in root.findall("link"):
             name = link.get("name")
+            if joint == "fixed" and name != "world":
+                continue
             if name in worlds and ends.count(name) == 1 and link.find("inertial") is None:
                 root.remove(link)
-                root.remove(joint)
+                root.remove(own)
                 return ET.tostring(root, encoding="unicode")
     return urdf
 
@@ -102,12 +110,18 @@ def _check(root: ET.Element, path: Path) -> None:
             raise RobotError("is xacro that was not expanded", path=path, valid=valid)
     if root.tag != "robot":
         raise RobotError(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>")
+    _check_tree(root, path)
     for owner, element, key, count in _numbers(root):
         text = element.get(key)
         if text is not None and not _are_numbers(text, count):
             where = f"{key} of <{element.tag}> in {owner.tag} '{owner.get('name')}'"
             valid = "a number" if count == 1 else f"{count} numbers with spaces between"
             raise RobotError(where, path=path, value=text, valid=valid)
+        if key == "xyz" and text is not None and max(map(abs, map(float, text.split()))) > FARTHEST:
+            where = (
+                f"{owner.tag} '{owner.get('name')}' is {FARTHEST:g} m away or more; are these millimetres?"
+            )
+            raise RobotError(where, path=path, value=text, valid="metres")
         if (
             element.tag == "axis"
             and text
@@ -119,6 +133,34 @@ def _check(root: ET.Element, path: Path) -> None:
         if element.tag == "mass" and float(text or 0) < 0:
             where = f"the mass of link '{owner.get('name')}' is negative"
             raise RobotError(where, path=path, value=text, valid="kg, 0 or more")
+
+
+def _check_tree(root: ET.Element, path: Path) -> None:
+    """Refuse what its parser would print to the terminal, and say no more of than that it cannot be read."""
+    names = {kind: [str(one.get("name")) for one in root.findall(kind)] for kind in ("link", "joint")}
+    for kind, known in names.items():
+        if twice := [name for name in known if known.count(name) > 1]:
+            raise RobotError(f"{kind} '{twice[0]}' is there twice", path=path, valid="names of their own")
+    carried: dict[str, str] = {}
+    for joint in root.findall("joint"):
+        name, ends = str(joint.get("name")), [joint.find(end) for end in ("parent", "child")]
+        for end, found in zip(("parent", "child"), ends, strict=True):
+            link = None if found is None else found.get("link")
+            if link not in names["link"]:
+                valid = "the name of a link of the URDF"
+                raise RobotError(f"joint '{name}' has the {end} '{link}'", path=path, valid=valid)
+        child = str(ends[1].get("link") if ends[1] is not None else "")
+        if child in carried:
+            text = f"link '{child}' hangs on two joints, '{carried[child]}' and '{name}'"
+            raise RobotError(text, path=path, valid="a tree; a loop is cut open")
+        carried[child] = name
+        if joint.get("type") in ("revolute", "prismatic") and joint.find("limit") is None:
+            valid = "<limit lower=... upper=... effort=... velocity=...>, or type continuous"
+            raise RobotError(f"{joint.get('type')} joint '{name}' has no limits", path=path, valid=valid)
+    roots = [name for name in names["link"] if name not in carried]
+    if len(roots) > 1:
+        text = f"its links do not hang together: '{roots[0]}' and '{roots[1]}' hang on no joint"
+        raise RobotError(text, path=path, valid="one root link")
 
 
 def _numbers(root: ET.Element) -> Iterator[tuple[ET.Element, ET.Element, str, int]]:

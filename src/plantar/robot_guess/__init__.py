@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.errors import LogError
+from plantar.errors import LogError, RobotError
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.faults.channels import named
 from plantar.faults.joints.names import check_joint_names, recorded_joints
@@ -26,8 +26,8 @@ from plantar.logs.readers.urdf_names import with_following_joints, with_urdf_nam
 from plantar.notes import Finding
 from plantar.robot.joint_names import JointNames, propose_names, propose_order
 from plantar.robot.model import RobotModel, load_robot
-from plantar.robot.urdf import following_joints, parse_urdf, read_urdf
-from plantar.robot_guess.biped import find_biped
+from plantar.robot.urdf import following_joints, from_trunk, parse_urdf, read_urdf
+from plantar.robot_guess.biped import find_biped, without_toes
 from plantar.robot_guess.bush import bush_shift
 from plantar.robot_guess.column_map import read_column_map
 from plantar.robot_guess.evidence import Remark, check_stance, widen_outline
@@ -50,7 +50,9 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
     Raises RobotError where the URDF is unreadable or no biped, LogError where a log is, or is of another robot.
     """
     text = read_urdf(urdf)
-    model = parse_urdf(text, urdf, floating=False)
+    model = parse_urdf(
+        from_trunk(text, "fixed"), urdf, floating=False
+    )  # its root is not where the world's is
     tree = UrdfTree.load(urdf)
     biped = find_biped(tree, model)
     soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
@@ -61,6 +63,11 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
         # What is wrong with the map names its file.
         reading = replace(_loaded(blind, urdf, mapped), path=columns)
     sensors = look_at(logs, reading)
+    recorded = {
+        name.split(".")[1] for log in sensors.logs for name in log.columns if name.startswith("joint.")
+    }
+    biped = without_toes(biped, tree, model, recorded | following_joints(text).keys())
+    soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
     draft = _first_draft(tree, soles, sensors, urdf)
     draft, recordings = _with_names(draft, tuple(model.names)[1:], sensors.logs)
     recordings = [with_following_joints(log, following_joints(text)) for log in recordings]
@@ -234,7 +241,10 @@ def _loaded(draft: Draft, urdf: Path, mapped: str = "") -> RobotModel:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.yaml"
         write_text(path, draft.text(str(urdf.resolve())) + mapped)
-        return load_robot(path)
+        try:
+            return load_robot(path)
+        except RobotError as error:  # the file is gone when the line is read
+            raise RobotError(str(error).replace(str(path), str(urdf))) from error
 
 
 def _relative(path: Path, out: Path) -> str:

@@ -7,7 +7,7 @@ where the ends and the root link are with all joints at 0 follow the axes in whi
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -96,11 +96,30 @@ def _limbs(tree: UrdfTree, model: pin.Model) -> list[Limb]:
         name = model.names[joint]
         if len(model.subtrees[joint]) > 1 or name not in tree.joints:
             continue
-        link = tree.ends(tree.joints[name])[1]
-        pose = data.oMf[model.getFrameId(link)]
-        chain = tuple(model.names[k] for k in model.supports[joint] if k)
-        found.append(Limb(link, chain, np.array(pose.translation), _exact(np.array(pose.rotation))))
+        found.append(_limb(tree, model, data, joint))
     return found
+
+
+def _limb(tree: UrdfTree, model: pin.Model, data: pin.Data, joint: int) -> Limb:
+    """The chain from the root link to the link that a joint carries; `data` with the frames' poses."""
+    link = tree.ends(tree.joints[model.names[joint]])[1]
+    pose = data.oMf[model.getFrameId(link)]
+    chain = tuple(model.names[k] for k in model.supports[joint] if k)
+    return Limb(link, chain, np.array(pose.translation), _exact(np.array(pose.rotation)))
+
+
+def without_toes(biped: Biped, tree: UrdfTree, model: pin.Model, recorded: Collection[str]) -> Biped:
+    """Legs that end above the joints at their ends which are not `recorded` while all the leg's others are: toes that
+    nothing drives, which give way to the floor."""
+    data, legs = model.createData(), list[Limb]()
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    for leg in biped.legs:
+        held = tuple(name for name in leg.joints if name in recorded)
+        toes = FEWEST_JOINTS <= len(held) < len(leg.joints) and leg.joints[: len(held)] == held
+        legs.append(
+            replace(_limb(tree, model, data, model.getJointId(held[-1])), side=leg.side) if toes else leg
+        )
+    return replace(biped, legs=tuple(legs))
 
 
 def _exact(rotation: Array) -> Array:
@@ -179,7 +198,7 @@ def _nothing_below(tree: UrdfTree, model: pin.Model, pair: tuple[Limb, ...], up:
     """A pedestal under the robot, or a part that hangs lower than the ends, says that the ends are no feet."""
     data = model.createData()
     pin.framesForwardKinematics(model, data, pin.neutral(model))
-    feet = {tree.joints[leg.joints[-1]].get("name") for leg in pair}
+    feet = {tree.joints[name].get("name") for leg in pair for name in leg.joints[-2:]}  # a foot, and its toes
     carried = {k for k in range(1, model.njoints) if model.names[k] in feet}
     depth = float(np.mean([leg.place @ up for leg in pair]))
     others = [frame for frame in range(model.nframes) if model.frames[frame].parentJoint not in carried]

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import FORCE, TORQUE, Array
+from plantar.faults.stance import usual as usual_length
 from plantar.robot_guess.feet import Sole
 from plantar.robot_guess.imu import Mount, right_angles
 from plantar.robot_guess.passive import that_push_back
@@ -47,12 +48,12 @@ def seats_by_log(
     # The link's axes or the foot's before any others; of these two, those that need fewer signs turned.
     plain = [option for option in steep if any(option is first for first in signed[:2])] or steep
     if not plain:
-        return seats, _usual(moment_arms(seats, stance, poses))
+        return seats, usual_length(moment_arms(seats, stance, poses))
     usual = min(plain, key=lambda option: sum(seat.sign < 0 for seat in option.values()))
     changes = [_change(moment_arms(option, stance, poses)) for option in (usual, *steep)]
     best = int(np.argmin(changes))
     chosen = [usual, *steep][best] if changes[best] < CLEARLY * changes[0] and changes[0] > SMALL else usual
-    return chosen, _usual(moment_arms(chosen, stance, poses))
+    return chosen, usual_length(moment_arms(chosen, stance, poses))
 
 
 def moment_arms(seats: Mapping[str, Seat], stance: Stance, poses: Mapping[str, Array]) -> Array:
@@ -70,10 +71,6 @@ def moment_arms(seats: Mapping[str, Seat], stance: Stance, poses: Mapping[str, A
     load = np.maximum(np.abs(np.sum(total * stance.up, axis=1)), 1.0)
     found = level / load[:, None]
     return np.asarray(found[stance.double] if stance.double.sum() >= FEWEST else found)
-
-
-def _usual(found: Array) -> float:
-    return float(np.median(np.linalg.norm(found, axis=1)))
 
 
 def _change(found: Array) -> float:

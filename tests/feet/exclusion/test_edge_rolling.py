@@ -132,3 +132,27 @@ def test_an_angles_zero_moves_edges_by_a_usual_zero_of_the_torque_at_most(
     )
     (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
     assert (rest.used("left")[~near].mean() > 0.9) == used
+
+
+@pytest.mark.parametrize(("width", "used"), [(0.042, True), (0.12, True), (0.026, False)])
+def test_the_middle_of_a_narrow_sole_is_not_its_edge(robot: RobotModel, width: float, used: bool) -> None:
+    """6 mm aside of it, of a robot whose angle has a zero: an edge moved by 12 mm would be met at 15 of 21 mm."""
+    narrow = {}
+    for name, foot in robot.feet.items():
+        polygon = foot.sole.polygon * [1.0, width / np.ptp(foot.sole.polygon[:, 1])]
+        narrow[name] = replace(foot, sole=replace(foot.sole, polygon=polygon))
+    robot = replace(robot, feet=narrow)
+    recording = filtered_recording(prepare(robot, record(sway(duration=12.0)), "fit"), 5.0)
+    near = np.abs(recording.time - 6.0) < 0.5
+    middle = robot.feet["left"].sole.polygon[:, 1].mean()
+    side = np.where(near, width / 2 - 0.002, 0.006)
+    cop = np.column_stack([0.0 * recording.time, middle + side])
+    state, raw = (each["left"] for each in (recording.bushes, recording.raw))
+    turned = replace(state, cop=cop, deflection=state.deflection + 0.1)
+    recording = replace(
+        recording,
+        bushes={**recording.bushes, "left": turned},
+        raw={**recording.raw, "left": replace(raw, deflection=raw.deflection + 0.1)},
+    )
+    (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
+    assert (rest.used("left")[~near].mean() > 0.9) == used

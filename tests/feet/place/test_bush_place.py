@@ -62,7 +62,6 @@ def test_a_centre_at_another_height_is_found(
     for model in found.models:
         assert abs(model.moment_arms[1]) == pytest.approx(0.03, abs=0.004)
     assert worst(found) < 0.02
-    assert worst(identify_feet(robot, logs, settings=LINEAR)) > 2 * worst(found)
 
 
 def placed(axis: Axis, height: float, *codes: str) -> AxisFit:
@@ -112,15 +111,14 @@ def test_a_height_told_of_one_foot_puts_the_other_foot_s_in_doubt(
 
 def test_a_height_far_off_is_found_where_one_axis_alone_shows_it(measured: RobotModel) -> None:
     """Motions that lean forward and hardly aside: both feet's sensors are 4 cm lower than the robot file has them."""
-    little, none = sines((0.0008, 0.5, 0.0)), sines((0.0, 0.0, 0.0))
+    little, none = sines((0.0001, 0.5, 0.0)), sines((0.0, 0.0, 0.0))
     ankles = {foot: (sines((0.02, 0.3, 2.0), (0.01, 0.8, 0.0)), little) for foot in FEET}
     forward = sway("forward", 5, duration=40.0, torso=(none, none, none), ankles=ankles)
     log = shifted(noisy(record(forward), 5), np.array([0.0, 0.0, 0.04]))
-    sure = replace(measured, uncertainty=Uncertainty(bush_position=0.001, wrench_crosstalk=0.0))
-    found = identify_feet(sure, [log], settings=PUNCTUAL)
-    for foot in FEET:  # each axis alone is drawn half way to the robot file
-        pitch, roll = (one.moment_arms[1] for one in found.models if one.foot == foot)
-        assert roll < pitch < -0.02
+    found = identify_feet(measured, [log], settings=PUNCTUAL)
+    for foot in FEET:  # roll alone would stay where the robot file has it
+        arms = [one.moment_arms[1] for one in found.models if one.foot == foot]
+        assert arms == pytest.approx([-0.04, -0.04], abs=0.002)
 
 
 def test_a_turned_force_sensor_is_found(measured: RobotModel, recorded: list[MotionLog]) -> None:

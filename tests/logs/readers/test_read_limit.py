@@ -24,7 +24,7 @@ from mcap_records import mcap_of_chunk
 from plantar.errors import LogError
 from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log, read_limit
+from plantar.logs.readers import open_log, read_limit, robot_logger
 from plantar.logs.readers.read_limit import (
     ReadLimit,
     machine_memory,
@@ -251,6 +251,15 @@ def test_hdf5_that_claims_or_unpacks_to_more(tmp_path: Path) -> None:
         group.create_dataset("elements_names", shape=(10**9,), chunks=(2**17,), dtype="f8")
     with pytest.raises(LogError, match="more than 1000 names"):
         open_log(path)
+    for chunks, refused in ((1000, False), (1001, True)):
+        with h5py.File(tmp_path / f"text_{chunks}.mat", "w") as file:
+            text = file.create_dataset("text", (4, 1), "u2", maxshape=(None, 1), chunks=(chunks, 1))
+            text[:, 0] = [ord(letter) for letter in "knee"]
+            if refused:
+                with pytest.raises(ValueError, match="too long"):
+                    robot_logger._text(text)
+            else:
+                assert robot_logger._text(text) == "knee"
 
 
 def test_mc_rtc_entries_that_grow(tmp_path: Path) -> None:

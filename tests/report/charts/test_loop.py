@@ -50,6 +50,16 @@ def test_stances_lie_over_each_other_without_their_offsets() -> None:
         assert np.abs(away).max() < 1.0, f"{kind}: offsets would set stances apart by many pixels"
 
 
+def test_a_foot_is_drawn_without_the_other() -> None:
+    """The other one bends five times as far."""
+    other = [
+        replace(track, values={name: 5 * values for name, values in track.values.items()})
+        for track in walk_tracks("right")
+    ]
+    alone, both = (loop_charts(walk_result(), tracks) for tracks in (walk_tracks(), [*walk_tracks(), *other]))
+    assert both["left", "pitch"] == alone["left", "pitch"]
+
+
 def test_what_was_not_fitted_or_not_used_is_not_drawn() -> None:
     tracks = walk_tracks()
     wild = replace(

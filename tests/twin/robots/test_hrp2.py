@@ -99,6 +99,14 @@ def test_the_mjcf_is_the_same_robot(model: pin.Model, half_sitting: np.ndarray) 
         assert ours == pytest.approx(expected * 9.80665 / 9.81, rel=1e-6, abs=1e-9)
 
 
+def test_mujoco_reads_the_scene_as_it_is_told() -> None:
+    """A sole rubs alike in all directions, as only an elliptic cone has it; gravity is the one of the logs."""
+    simulated = mujoco.MjModel.from_xml_string(mjcf_text(hrp2.robot(), PAPER, Scene(timestep=5e-4)))
+    assert simulated.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
+    assert simulated.opt.timestep == 5e-4
+    np.testing.assert_array_equal(simulated.opt.gravity, [0.0, 0.0, -9.80665])
+
+
 def test_the_robot_file_reads_back(tmp_path) -> None:
     robot = load_robot(hrp2.write(tmp_path))
     assert set(robot.feet) == {"left", "right"}

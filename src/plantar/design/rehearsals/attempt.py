@@ -66,8 +66,8 @@ class Attempt:
         self.coefficients, self.rehearsals = self.better(within, self.coefficients), {}
 
     def shrink(self) -> None:
-        """Smaller in all."""
-        self.shares, self.others = SMALLER * self.shares, SMALLER * self.others
+        """Joints that move less: what legs do not reach and links that touch are no matter of what soles hold."""
+        self.others = SMALLER * min(self.others, self.reach.used_over_none(self.coefficients))
         self.search_on()
 
     def lower_arms(self) -> bool:
@@ -107,8 +107,9 @@ class Attempt:
 
 def until_it_holds(
     motion: Attempt, legs: Legs, told: Softness, progress: Callable[[str], None]
-) -> tuple[Array, list[Rehearsal], int]:
-    """The motion within limits at which it holds at every stiffness. Raises MotionError where none does.
+) -> tuple[Array, Trajectory, list[Rehearsal], int]:
+    """The motion within limits at which it holds at every stiffness, its joints, rehearsals, and pairs of links that
+    were watched. Raises MotionError where none does.
 
     A rehearsal takes seconds: the ends of the range come first, and after a change those at which it did not hold. In
     the end all hold with the motion as it is.
@@ -142,7 +143,7 @@ def until_it_holds(
             continue
         progress("identify the feet from the rehearsals")
         rehearsals = _with_results(robot, [motion.rehearsals[factor] for factor in motion.factors])
-        return motion.coefficients, rehearsals, watched.pairs
+        return motion.coefficients, trajectory, rehearsals, watched.pairs
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 

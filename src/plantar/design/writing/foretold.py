@@ -23,13 +23,17 @@ TOLD_APART: Final = SLIP_ANGLE / SURE_SLIP_ANGLE  # rad, what `identify feet` as
 def foretold(found: Design, parameters: Sequence[Mapping[str, Any]]) -> list[str]:
     """A line for each axis of a foot that will be weak, and for each number that comes out wrong and is not called so.
 
-    `parameters` as in MOTION.json.
+    `parameters` as in MOTION.json. What an earlier result knows may be weak in the log of this motion alone.
     """
-    notes = []
+    notes, before = list[str](), [] if found.known is None else found.known.sure
     for (foot, axis), group in groupby(parameters, key=lambda row: (row["foot"], row["axis"])):
         rows = list(group)
         weak = sorted({one["factor"] for row in rows for one in row["at"] if not one["usable"]})
-        if weak:
+        if weak and (foot, axis) in before:
+            notes.append(
+                f"{foot} {axis} is known, and weak from this motion alone: identify both logs together"
+            )
+        elif weak:
             notes.append(_weak(found, foot, axis, rows, weak))
         notes += [text for row in rows if (text := _wrong(row)) is not None]
     for axis, name in product(ROTATIONAL_AXES, WANTED_OF):
@@ -55,11 +59,16 @@ def _weak(
     if least >= TOLD_APART:
         return said
     most = bends[max(bends)] / TOLD_APART * found.factors[1] * found.told.stiffness
+    advice = (
+        "tell the stiffness more closely, or make the next motion with --after this one's result"
+        if found.known is None
+        else "this robot's soles do not hold what it takes to bend stiffer ones so far. What is found of them is the "
+        "stiffness of the spring and of what slips together"
+    )
     return (
         f"{said}. Over this range of stiffness the motion bends it by {1e3 * least:.3g} mrad to either side; rubber "
         f"that slips at {1e3 * SLIP_ANGLE:.3g} mrad is surely told from its spring beyond {1e3 * TOLD_APART:.3g}. That "
-        f"would need feet no stiffer than {most:.3g} N·m/rad: tell the stiffness more closely, or make the next motion "
-        "with --after this one's result"
+        f"would need feet no stiffer than {most:.3g} N·m/rad: {advice}"
     )
 
 

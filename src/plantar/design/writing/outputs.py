@@ -50,7 +50,7 @@ def write_design(
     content = content_of(found, path, rate)
     for share in (1.0, *(APPROACH if approach else ())):
         motion = path if share == 1.0 else path.with_stem(f"{path.stem}_{round(100 * share)}")
-        trajectory = found.trajectory(share)
+        trajectory = found.trajectory if share == 1.0 else found.gentler(share)
         save_log(trajectory.log(rate), motion)
         for target in targets:
             ending, write = TARGETS[target]
@@ -83,7 +83,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             for one in found.rehearsals
         ]]
     ]  # fmt: skip
-    way, speed = found.trajectory().limits_used()
+    way, speed = found.trajectory.limits_used()
     return {
         "schema": SCHEMA,
         "robot": found.robot.name,

@@ -17,7 +17,7 @@ from plantar.exporters.comment import mesh_note
 from plantar.exporters.contact.springs import FRICTION, RADIUS, Placed, placed, said, spring_foot
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.drake import MESHES, URI, tag
-from plantar.exporters.sdf.from_urdf import sdf_from_urdf
+from plantar.exporters.sdf.from_urdf import tree_of
 from plantar.exporters.sdf.tree import SdfTree, relative, set_pose
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.xml_file import numbers, to_text, vector
@@ -35,12 +35,7 @@ def write(job: Job, notes: Notes) -> str:
 
     Raises ExportError: no ankle, a model without mass, a bush that does not stand over its sole.
     """
-    assert job.model is not None
-    ankles = tuple(foot.ankle for foot in job.feet)
-    if job.model.suffix.lower() == ".urdf":
-        tree = SdfTree(sdf_from_urdf(job.model, notes, MESHES), job.model, ankles)
-    else:
-        tree = SdfTree.load(job.model, ankles)
+    tree = tree_of(job, notes, MESHES)
     ET.register_namespace("drake", URI)
     weight = tree.mass() * GRAVITY
     for foot in job.feet:

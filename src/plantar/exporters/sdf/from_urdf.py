@@ -5,15 +5,28 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Collection
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from plantar.conventions import Array
 from plantar.errors import ExportError
-from plantar.exporters.sdf.tree import set_pose
+from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.urdf.tree import UrdfTree, origin_of
 from plantar.exporters.xml_file import numbers, vector
 from plantar.notes import Notes
 
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
 JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic"}
+
+
+def tree_of(job: Job, notes: Notes, meshes: Collection[str] | None = None) -> SdfTree:
+    """The job's model, with its ankles; `meshes` as of `sdf_from_urdf`, for a model that is a URDF."""
+    assert job.model is not None
+    ankles = tuple(foot.ankle for foot in job.feet)
+    if job.model.suffix.lower() == ".urdf":
+        return SdfTree(sdf_from_urdf(job.model, notes, meshes), job.model, ankles)
+    return SdfTree.load(job.model, ankles)
 
 
 def sdf_from_urdf(path: Path, notes: Notes, meshes: Collection[str] | None = None) -> ET.Element:

@@ -16,7 +16,7 @@ from plantar.conventions import Array
 from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
-from plantar.exporters.sdf.from_urdf import sdf_from_urdf
+from plantar.exporters.sdf.from_urdf import tree_of
 from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
@@ -44,12 +44,7 @@ def insert_bushes(job: Job, notes: Notes, *, springs: bool, meshes: Collection[s
 
     `meshes`: the mesh endings that the target reads, for a model made from a URDF.
     """
-    assert job.model is not None
-    ankles = tuple(foot.ankle for foot in job.feet)
-    if job.model.suffix.lower() == ".urdf":
-        tree = SdfTree(sdf_from_urdf(job.model, notes, meshes), job.model, ankles)
-    else:
-        tree = SdfTree.load(job.model, ankles)
+    tree = tree_of(job, notes, meshes)
     for foot in job.feet:
         if earlier := earlier_joints(foot, tree.joints, tree.path):
             for spring, joint in earlier:

@@ -38,8 +38,9 @@ NEAR = 0.1  # s before and behind the edge, in which the excess is that of a fla
 SMEAR = 0.02  # s that this filter spreads a lean
 FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
 VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
-# m, times the weight: the torque's zero; a sensor that is farther off is told to be zeroed.
-LARGEST_ZERO = TORQUE_OFF
+# m, times the weight: the torque's zero; a sensor that is farther off is told to be zeroed. A small foot's is made for
+# smaller torques: a share of half the sole's width, or the middle of the sole would count as its edge.
+LARGEST_ZERO, ZERO_SHARE = TORQUE_OFF, 0.125
 FEWEST = 0.04  # s of sure lean, for the edge to be known
 # By how much an outline that is a guess may be too large [m, and of half the sole's width]: a sole tips before it seems
 # to be at its edge.
@@ -54,12 +55,14 @@ def without_edge_rolling(
     Feet with `contact: always` are left as they are: their centre of pressure means nothing. So are feet that step:
     they roll while they land and lift, and what is left there weighs little.
     """
-    rest, largest = list(recordings), LARGEST_ZERO * robot.mass * GRAVITY
+    rest = list(recordings)
     for name, foot in robot.feet.items():
         if foot.contact != "always":
             guessed = any(guess.key.startswith(f"feet.{name}.sole") for guess in robot.guesses)
-            inner = min(GUESSED, GUESSED_SHARE * float(np.ptp(foot.sole.polygon, axis=0).min()) / 2)
+            half = float(np.ptp(foot.sole.polygon, axis=0).min()) / 2
+            inner, zero = min(GUESSED, GUESSED_SHARE * half), min(LARGEST_ZERO, ZERO_SHARE * half)
             margin = settings.edge_margin + (inner if guessed else 0.0)
+            largest = zero * robot.mass * GRAVITY
             rest = _flat(rest, name, foot.sole.polygon, settings.edge_margin, margin, largest)
     return rest
 

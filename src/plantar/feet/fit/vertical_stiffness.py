@@ -21,6 +21,7 @@ from plantar.contact.phases import DOUBLE, SUPPORTS
 from plantar.contact.sole_height import height_changes
 from plantar.conventions import NORMAL95, STIFFNESS_UNIT, Array, Mask
 from plantar.estimation import Block, effect_of, fit_linear, influences_of, interval95, relative_std_percent
+from plantar.feet.fit.compliances import ALIKE, Compliances
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter, Verdict
@@ -30,64 +31,38 @@ from plantar.signals.segments import complete
 
 FEWEST_SAMPLES = 100  # in double support, of one recording
 RELIABLE = 10.0  # times its noise's variance: that of a load from which a compliance is read
-ALIKE = 0.1  # of the compliances' sum: usual deviation of their difference between feet of one robot
 UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
 USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
 
+UNCLEAR = "the heights of the soles do not follow the load clearly"
+UNLIKE = "only the sum of both compliances shows, and pitch or roll of the feet differ"
 ADVICE = (
     "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
 )
 ADVICE_APART = (
     "the total load must change to tell the feet apart: stand on both feet while somebody presses the robot down or "
-    "lifts it by 50 N or more, slowly and several times"
+    "lifts it by a tenth of its weight or more, slowly and several times"
 )
 
 
 @dataclass(frozen=True)
-class Compliances:
-    """Sum and difference (left - right) of two feet's vertical compliances [m/N], with their covariance (2, 2)."""
-
-    total: float
-    difference: float
-    covariance: Array
-    freedom: float
-    white_std: Array
-
-    @property
-    def clear(self) -> bool:
-        """Whether the sum is positive beyond doubt."""
-        return interval95(self.total, float(np.sqrt(self.covariance[0, 0])), self.freedom)[0] > 0
-
-    @property
-    def trust(self) -> float:
-        """How far the data tell the feet apart, 0 to 1: the rest is that feet of one robot are ALIKE."""
-        prior = (ALIKE * self.total) ** 2
-        return float(prior / (prior + self.covariance[1, 1]))
-
-    @property
-    def separable(self) -> bool:
-        """Whether the data, more than their likeness, tell the feet apart."""
-        return self.trust > 0.5
-
-    def of(self, side: float) -> tuple[float, float]:
-        """Compliance and its std of the left (+1) or right (-1) foot; half of the sum where they do not separate."""
-        gain = self.trust
-        weights = np.array([0.5, 0.5 * side * gain])
-        unseen = 0.25 * (1 - gain) ** 2 * (ALIKE * self.total) ** 2
-        return float(weights @ [self.total, self.difference]), float(
-            np.sqrt(weights @ self.covariance @ weights + unseen)
-        )
-
-
-@dataclass(frozen=True)
 class VerticalStiffness:
-    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's moment arm."""
+    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's moment arm; what is
+    `found` of both, and the `gains` of their force sensors."""
 
     parameters: tuple[Parameter, ...]
     notes: tuple[Note, ...]
     compliance: dict[str, float]
     compliance_std: dict[str, float]
     freedom: float
+    found: Compliances | None = None
+    gains: Mapping[str, float] | None = None
+
+    def of_feet_that_differ(self, share: float) -> VerticalStiffness:
+        """The same of feet whose other stiffnesses differ by this share of their sum: so may their compliances."""
+        if self.found is None or self.gains is None or share <= self.found.alike:
+            return self
+        return _of_both(replace(self.found, alike=share), self.gains)
 
 
 class Heights(NamedTuple):
@@ -120,17 +95,23 @@ def fit_vertical_stiffness(
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
         nothing, soft = dict.fromkeys(feet, 0.0), dict.fromkeys(feet, UNKNOWN_COMPLIANCE)
         return VerticalStiffness(unknown, (Note("z_unknown", "info", text),), nothing, soft, np.inf)
+    return _of_both(found, {foot: gains[foot] for foot in feet})
+
+
+def _of_both(found: Compliances, gains: Mapping[str, float]) -> VerticalStiffness:
     notes = []
     if not found.separable:
         text = "z: only the sum of both feet's compliances shows (the total load hardly changes); both taken as equal"
         notes.append(Note("z_sum_only", "info", text))
-    own = {foot: found.of(side) for foot, side in zip(feet, (1.0, -1.0), strict=True)}
+    own = {foot: found.of(side) for foot, side in zip(gains, (1.0, -1.0), strict=True)}
     return VerticalStiffness(
-        tuple(_row(foot, *own[foot], found, gains[foot]) for foot in feet),
+        tuple(_row(foot, *own[foot], found, gains[foot]) for foot in gains),
         tuple(notes),
         {foot: value for foot, (value, _) in own.items()},
         {foot: std for foot, (_, std) in own.items()},
         found.freedom,
+        found,
+        gains,
     )
 
 
@@ -210,8 +191,9 @@ def _both_stand(recording: Recording, feet: tuple[str, ...]) -> tuple[Mask, Arra
 def _row(foot: str, compliance: float, std: float, found: Compliances, gain: float) -> Parameter:
     """One foot's stiffness: from sum and difference where they separate, else with both feet alike."""
     low, high = interval95(compliance, std, found.freedom)
+    unlike = found.alike > ALIKE and not found.separable
     if low <= 0 or compliance <= 0:
-        return _unknown_row(foot)
+        return _unknown_row(foot, UNLIKE if unlike else UNCLEAR)
     width = float(np.hypot((high - low) / 2 / compliance, gain))
     std = float(np.hypot(std, gain / NORMAL95 * compliance))
     value = 1 / compliance
@@ -224,7 +206,9 @@ def _row(foot: str, compliance: float, std: float, found: Compliances, gain: flo
     if not found.separable:
         advice = ADVICE_APART
         verdict = "weak" if verdict == "usable" else verdict
-        reason += "; only the sum of both compliances shows, both feet taken as equal"
+        reason += (
+            f"; {UNLIKE}" if unlike else "; only the sum of both compliances shows, both feet taken as equal"
+        )
     white = relative_std_percent(found.total, float(found.white_std[0]))
     return Parameter(
         foot, "z", "stiffness", STIFFNESS_UNIT["z"], value, std * value**2, interval, white, verdict, reason,
@@ -232,7 +216,6 @@ def _row(foot: str, compliance: float, std: float, found: Compliances, gain: flo
     )  # fmt: skip
 
 
-def _unknown_row(foot: str) -> Parameter:
-    reason = "the heights of the soles do not follow the load clearly"
+def _unknown_row(foot: str, reason: str = UNCLEAR) -> Parameter:
     unit = STIFFNESS_UNIT["z"]
     return Parameter(foot, "z", "stiffness", unit, None, None, None, None, "unidentifiable", reason, ADVICE)

@@ -83,6 +83,6 @@ class PlaceSpread:
                 position = max(position, GUESSED if guess.spread is None else guess.spread)
         # Of a force sensor, a force that shows in a torque is like an arm: of the load aside, of the others above.
         crosstalk = robot.uncertainty.wrench_crosstalk
-        arm = float(np.hypot(position, crosstalk)) if position else 0.0
+        arm = float(np.hypot(position, crosstalk))
         measured = float(np.hypot(robot.uncertainty.bush_position, crosstalk))
         return cls(arm, arm, turned, between=measured or np.inf)
