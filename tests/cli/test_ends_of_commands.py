@@ -106,7 +106,7 @@ def test_design_prints_widths_and_rehearsals_in_their_units(
     }
     found = SimpleNamespace(
         robot=None,
-        trajectory=lambda: SimpleNamespace(plan=lambda: None),
+        trajectory=SimpleNamespace(plan=lambda: None),
         nominal=SimpleNamespace(bushes=None),
     )
     made_up(monkeypatch, design, load_robot=None)

@@ -44,7 +44,7 @@ def open_result(result: ResultInput) -> tuple[Mapping[str, Any], Path]:
 def _read(row: Mapping[str, Any]) -> Mapping[str, Any]:
     """A parameter with open ends of its interval, which JSON holds as null, as numbers; ExportError in another unit."""
     usual = UNITS.get(str(row.get("name")), {}).get(str(row.get("axis")))
-    if usual is not None and row.get("unit", usual) != usual:
+    if usual is not None and (row.get("unit") or usual) != usual:
         what = f"{row.get('foot')} {row.get('axis')}: the unit of the {row.get('name')}"
         raise ExportError(what, value=str(row["unit"]), valid=usual)
     ends = row.get("interval95")
