@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,19 @@ def test_a_log_in_the_air_has_no_stance(robot: RobotModel) -> None:
     log = record(sway(duration=12.0))
     light = {name: 0 * log.column(name) for name in log.columns if name.startswith("wrench.")}
     assert stance_of(robot, MotionLog(log.name, log.time, {**log.columns, **light})) is None
+
+
+def test_a_hum_of_the_structure_is_no_unbalanced_moment(robot: RobotModel, stance: Stance) -> None:
+    """40 Hz in the same horizontal force of both feet, which the samples meet at any phase; and a gap beside some."""
+    log = record(sway(duration=12.0))
+    hum = 60.0 * np.sin(2 * np.pi * 40.3 * log.time)
+    hum[::97] = np.nan
+    loud = {name: log.column(name) + hum for name in log.columns if name.endswith("force.x")}
+    found = stance_of(robot, MotionLog(log.name, log.time, {**log.columns, **loud}))
+    assert found is not None
+    assert found.sides().misfit == pytest.approx(stance.sides().misfit, abs=0.003)
+    bare = replace(found, wrenches=[wrench + [60.0, 0, 0, 0, 0, 0] for wrench in found.wrenches])
+    assert bare.sides().misfit > 0.05  # what the hum's crest would make
 
 
 @pytest.mark.parametrize("degrees", [-120.0, -30.0, 0.0, 90.0])

@@ -134,6 +134,13 @@ def slow_attenuation(blocks: Sequence[Block], slope: float, *, shared_offset: bo
     return np.asarray(inverse[:size, 0] * (along / slope if along > 0 else 0.0))
 
 
+def slow_share(block: Block, left: Array, slope: float) -> float:
+    """By which share, at most 1, errors of the first column that change slowly may have drawn its value in one standing
+    block to zero: all that a `slope` common to several blocks leaves (n,) of this one's response may be theirs."""
+    along = max(float(left @ left) - _beside_parabolas(left, _seconds(block)), 0.0)
+    return min(along * float(information_inverse([block])[0, 0]) / slope**2, 1.0)
+
+
 def _seconds(block: Block) -> StanceRows:
     """The rows of a block, second by second."""
     rows = np.arange(len(block.response))

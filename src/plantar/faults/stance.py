@@ -7,14 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
-from plantar.conventions import FORCE, GRAVITY, Array, rotation_from_quaternion
+from plantar.conventions import FORCE, GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Imu, RobotModel
 from plantar.signals.segments import complete, spread_out
 
 SAMPLES = 50  # spread over the log: enough to tell
+AVERAGED = (
+    0.1  # s, of the wrenches about each sample: a structure that hums moves no mass, and balances nothing
+)
 LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
 # Ratio of two tilts, and their correlation whatever the direction, to be compared.
 SIMILAR, COHERENT = 1.5, 0.9
@@ -62,7 +66,8 @@ class StanceSides:
 
 @dataclass(frozen=True)
 class Stance:
-    """Some samples of a loaded robot: attitude of the IMU (n, 4), joints (n, n_joints), wrench of each foot (n, 6)."""
+    """Some samples of a loaded robot: attitude of the IMU (n, 4), joints (n, n_joints), wrench of each foot (n, 6), the
+    mean of the moment about the sample."""
 
     robot: RobotModel
     imu: Imu
@@ -127,7 +132,15 @@ def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:
     rows = spread_out(np.flatnonzero(loaded), SAMPLES)
     if rows.size < 10:
         return None
-    return Stance(robot, imu, orientation[rows], positions[rows], [wrench[rows] for wrench in wrenches])
+    means = [_about(wrench, rows, whole, round(AVERAGED / 2 / log.period)) for wrench in wrenches]
+    return Stance(robot, imu, orientation[rows], positions[rows], means)
+
+
+def _about(values: Array, rows: NDArray[np.intp], whole: Mask, reach: int) -> Array:
+    """Means (n, k) of values (N, k) over the whole samples at most `reach` from each of the rows (n,)."""
+    window = np.clip(rows[:, None] + np.arange(-reach, reach + 1), 0, len(values) - 1)
+    weights = whole[window] / whole[window].sum(axis=1, keepdims=True)
+    return np.asarray(np.einsum("nw,nwk->nk", weights, np.where(whole[:, None], values, 0.0)[window]))
 
 
 def usual(vectors: Array) -> float:

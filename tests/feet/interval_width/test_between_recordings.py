@@ -183,6 +183,26 @@ def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
     assert bool(cause.share[0] > 0.02 * fit.values[0]) is widened
 
 
+def test_an_angle_that_wanders_in_a_recording_that_hardly_moves_is_no_other_stiffness() -> None:
+    """Three alike; one of them moves by a hundredth of the others and its attitude wanders by four times as much, so
+    that its own stiffness is a tenth. The same wandering beside a motion is nothing either."""
+    wandering = swayed(3000, amplitude=0.0012, seed=9)
+    recordings = []
+    for seed, size in enumerate((1.0, 0.9, 0.01)):
+        angle = size * swayed(3000, seed=seed)
+        noise = 0.02 * np.random.default_rng(seed).standard_normal(3000)
+        read = angle + (wandering if seed == 2 else 0.0)
+        recordings.append(made_recording(f"sway_{seed}", read, 400.0 * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    found = axis_differences(fit, recordings, False)
+    assert found is not None
+    assert found.differences.shares[1] < -0.8
+    assert np.sqrt(found.differences.covariance[0, 0]) < 0.01
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 1), False)
+    assert cause.share[0] < 0.01 * fit.values[0]
+
+
 def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
     """Two of five recordings, by the square of their sizes: a share of a thirtieth, of a twelfth."""
     for size, compared in ((0.18, False), (0.3, True)):

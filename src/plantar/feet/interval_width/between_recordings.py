@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import UNIFORM, Array
 from plantar.estimation import Block, fit_blocks, influences_of
+from plantar.estimation.errors_in_variables import slow_share
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
@@ -140,15 +141,33 @@ def differences_of(
     """Those of the recordings whose `effects` make more than the share TELLS of K; None where it is but one.
 
     Of few all are compared, however little they tell: nothing else says how far the one that tells most is off. In
-    these a zero of the yaw torque passes for a stiffness of their own, so that such `zeros` are free beside them.
+    these a zero of the yaw torque passes for a stiffness of their own, so that such `zeros` are free beside them, and
+    an angle that wanders for a softer one: who tells less than the share is as unsure as that makes it.
     """
     least = TELLS * abs(float(fit.values[0])) if len(blocks) >= FEWEST_RECORDINGS else 0.0
     tell = np.flatnonzero(np.abs(effects[:, 0]) > least).tolist()
     if len(tell) < 2:
         return None
+    found, stiffness = fit_blocks(blocks), max(abs(float(fit.values[0])), 1e-300)
     differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
-    usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
+    if blocks[0].stances is None:
+        little = np.abs(effects[tell, 0]) < TELLS * stiffness
+        left = [found.residuals[blocks[place].label] for place in tell]
+        drawn = [slow_share(blocks[place], own, stiffness) for place, own in zip(tell, left, strict=True)]
+        differences = beside_angle_errors(differences, np.where(little, drawn, 0.0))
+    usual = float(found.std[0]) / stiffness
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
+
+
+def beside_angle_errors(differences: Differences, drawn: Array) -> Differences:
+    """Differences of recordings from the first one, as unsure as errors of their angles make each, which may have
+    `drawn` (n,) its stiffness to zero by any share up to this.
+
+    In a recording that hardly moves about an axis the angle is mostly its own error, which no torque follows: its
+    stiffness alone is next to none, and what the fit leaves of it says nothing of that.
+    """
+    first, *others = np.square(UNIFORM * drawn)
+    return differences._replace(covariance=differences.covariance + first + np.diag(others))
 
 
 def beside_one(
