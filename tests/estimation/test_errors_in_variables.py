@@ -12,7 +12,7 @@ from biped import TRUTH, record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_linear
-from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved
+from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved, slow_share
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -29,6 +29,29 @@ def signals(seed: int, samples: int = 12000) -> Array:
     phase = np.random.default_rng(seed).uniform(0, 2 * np.pi)
     angle, omega = 0.02, 2 * np.pi * 0.3
     return angle * np.column_stack([np.sin(omega * time + phase), omega * np.cos(omega * time + phase)])
+
+
+@pytest.mark.parametrize(
+    ("drawn", "beside", "share"),
+    [
+        (0.5, 0.0, 0.5),  # two sines of one size: the error is half of the square of what is read
+        (0.1, 0.0, 0.1),
+        (0.0, 200.0, 0.0),  # stiffer by half
+        (0.0, -800.0, 0.0),  # reversed
+        (0.0, -40.0, 0.01),  # a tenth softer: an error of a hundredth of the square would do it
+    ],
+)
+def test_what_slow_errors_may_have_drawn_a_value_by(drawn: float, beside: float, share: float) -> None:
+    """Of a torque of K·angle, read beside an error of another frequency that holds `drawn` of the square of what is
+    read; or of another stiffness."""
+    time = PERIOD * np.arange(12000)
+    true, error = np.sin(2 * np.pi * 0.25 * time), np.sin(2 * np.pi * 0.15 * time)
+    angle = 0.01 * (np.sqrt(1 - drawn) * true + np.sqrt(drawn) * error)
+    rate = differentiate(angle[:, None], PERIOD)[:, 0]
+    torque = 400.0 * 0.01 * np.sqrt(1 - drawn) * true + beside * angle
+    one = Block("sway", np.column_stack([angle, rate]), torque, PERIOD)
+    left = torque - 400.0 * angle
+    assert slow_share(one, left, 400.0) == pytest.approx(share, rel=0.05, abs=1e-4)
 
 
 def behind_filter(values: Array) -> float:

@@ -8,6 +8,7 @@ products (W. A. Fuller, Measurement Error Models, Wiley 1987).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -25,6 +26,7 @@ ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
 FEWEST = 50  # samples
 SECOND = 1.0  # s, within which an attitude that wanders is nearly a parabola in time
+PAST_ZERO = 1.5  # of a value: errors draw it to zero, and chance not far past it
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
@@ -136,7 +138,12 @@ def slow_attenuation(blocks: Sequence[Block], slope: float, *, shared_offset: bo
 
 def slow_share(block: Block, left: Array, slope: float) -> float:
     """By which share, at most 1, errors of the first column that change slowly may have drawn its value in one standing
-    block to zero: all that a `slope` common to several blocks leaves (n,) of this one's response may be theirs."""
+    block to zero: all that a `slope` common to several blocks leaves of its response, `left` (n,), may be theirs. None
+    where the block's own value is no smaller, or has the other sign.
+    """
+    change = float(fit_blocks([replace(block, response=left)]).values[0])
+    if not -PAST_ZERO * slope < change < 0:
+        return 0.0
     along = max(float(left @ left) - _beside_parabolas(left, _seconds(block)), 0.0)
     return min(along * float(information_inverse([block])[0, 0]) / slope**2, 1.0)
 

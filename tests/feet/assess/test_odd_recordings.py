@@ -74,6 +74,19 @@ def test_a_recording_that_hardly_moves_is_not_compared() -> None:
     assert said(swaying((PLAIN, 1.0), (SOFTER, 0.05), (PLAIN, 1.0))) == []
 
 
+def test_an_angle_that_wanders_beside_a_small_motion_is_no_other_sign() -> None:
+    """One moves by a sixth of the others, its attitude wanders by more: a fifth of the stiffness. Another sign is told
+    of as small a motion."""
+    recordings = swaying((PLAIN, 1.0), (PLAIN, 1.0), (PLAIN, 0.16))
+    wandering = swayed(COUNT, amplitude=0.006, seed=9)
+    state = recordings[2].bushes[FOOT]
+    read = state.deflection[:, 0] + wandering
+    wanders = made_recording("sway_2", read, state.torque[:, 0])
+    assert said([*recordings[:2], wanders]) == []
+    reversed_ = Rubber(stiffness=-420.0, damping=-18.0)
+    assert len(said(swaying((PLAIN, 1.0), (PLAIN, 1.0), (reversed_, 0.16)))) == 1
+
+
 def test_a_memory_makes_small_motions_stiffer() -> None:
     recordings = swaying((SLIPPING, 1.0), (SLIPPING, 0.3), (SLIPPING, 1.0))
     assert len(said(recordings, "kelvin_voigt")) == 1

@@ -15,7 +15,7 @@ from plantar.conventions import NORMAL95, SURE
 from plantar.estimation import Block, fit_blocks, influences_of, interval95
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.estimation.random_effects import Differences, Odd, furthest
-from plantar.feet.interval_width.between_recordings import among, beside_one
+from plantar.feet.interval_width.between_recordings import among, beside_angle_errors, beside_one
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, beside, recordings_of
@@ -46,7 +46,10 @@ def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> lis
     tell = np.flatnonzero(np.array(told) > TELLS * fit.values[0]).tolist()
     if len(tell) < 2 or not fit.values[0] > 0:
         return []
-    odd = furthest(among(beside_one(blocks, torques, tell[0]), tell), MUCH, SURE)
+    differences, stiffness = among(beside_one(blocks, torques, tell[0]), tell), float(fit.values[0])
+    shares = np.array(told) / stiffness
+    differences = beside_angle_errors(differences, blocks, fit.residuals, stiffness, shares, tell)
+    odd = furthest(differences, MUCH, SURE)
     if odd is not None and not isinstance(wide.model, KelvinVoigt):
         place = tell[odd.place]
         own = [torque[:, None] * float(each == place) for each, torque in enumerate(torques)]

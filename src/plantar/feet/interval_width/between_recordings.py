@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -150,23 +150,38 @@ def differences_of(
         return None
     found, stiffness = fit_blocks(blocks), max(abs(float(fit.values[0])), 1e-300)
     differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
-    if blocks[0].stances is None:
-        little = np.abs(effects[tell, 0]) < TELLS * stiffness
-        left = [found.residuals[blocks[place].label] for place in tell]
-        drawn = [slow_share(blocks[place], own, stiffness) for place, own in zip(tell, left, strict=True)]
-        differences = beside_angle_errors(differences, np.where(little, drawn, 0.0))
+    told = effects[:, 0] / stiffness
+    differences = beside_angle_errors(differences, blocks, found.residuals, stiffness, told, tell)
     usual = float(found.std[0]) / stiffness
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 
 
-def beside_angle_errors(differences: Differences, drawn: Array) -> Differences:
-    """Differences of recordings from the first one, as unsure as errors of their angles make each, which may have
-    `drawn` (n,) its stiffness to zero by any share up to this.
+def beside_angle_errors(
+    differences: Differences,
+    blocks: Sequence[Block],
+    residuals: Mapping[str, Array],
+    stiffness: float,
+    told: Array,
+    places: Sequence[int],
+) -> Differences:
+    """Differences of blocks at `places` from the first of these, as unsure as errors of their angles make those that
+    tell less than the share TELLS of the stiffness: they may have drawn it to zero by any share up to what explains
+    the `residuals` of the fit of all blocks.
 
     In a recording that hardly moves about an axis the angle is mostly its own error, which no torque follows: its
     stiffness alone is next to none, and what the fit leaves of it says nothing of that.
+
+    told: shares of the stiffness that the blocks tell.
     """
-    first, *others = np.square(UNIFORM * drawn)
+    if blocks[0].stances is not None:
+        return differences
+    drawn = [
+        slow_share(blocks[place], residuals[blocks[place].label], stiffness)
+        if abs(told[place]) < TELLS
+        else 0.0
+        for place in places
+    ]
+    first, *others = np.square(UNIFORM * np.array(drawn))
     return differences._replace(covariance=differences.covariance + first + np.diag(others))
 
 
