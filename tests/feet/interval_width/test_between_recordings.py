@@ -183,13 +183,16 @@ def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
     assert bool(cause.share[0] > 0.02 * fit.values[0]) is widened
 
 
-def test_an_angle_that_wanders_in_a_recording_that_hardly_moves_is_no_other_stiffness() -> None:
-    """Three alike; one of them moves by a hundredth of the others and its attitude wanders by four times as much, so
-    that its own stiffness is a tenth. The same wandering beside a motion is nothing either."""
-    wandering = swayed(3000, amplitude=0.0012, seed=9)
+@pytest.mark.parametrize(("size", "unsure"), [(0.01, True), (0.5, False)])
+def test_an_angle_that_wanders_in_a_recording_that_hardly_moves_is_no_other_stiffness(
+    size: float, unsure: bool
+) -> None:
+    """Three alike; one of them moves less and its attitude wanders four times as much as a hundredth of the others, or
+    as much as half of them: its own stiffness is a tenth, or a half. Who tells much of the stiffness differs."""
+    wandering = swayed(3000, amplitude=0.0012 if unsure else 0.015, seed=9)
     recordings = []
-    for seed, size in enumerate((1.0, 0.9, 0.01)):
-        angle = size * swayed(3000, seed=seed)
+    for seed, own in enumerate((1.0, 0.9, size)):
+        angle = own * swayed(3000, seed=seed)
         noise = 0.02 * np.random.default_rng(seed).standard_normal(3000)
         read = angle + (wandering if seed == 2 else 0.0)
         recordings.append(made_recording(f"sway_{seed}", read, 400.0 * angle + noise))
@@ -197,10 +200,12 @@ def test_an_angle_that_wanders_in_a_recording_that_hardly_moves_is_no_other_stif
     assert fit is not None
     found = axis_differences(fit, recordings, False)
     assert found is not None
-    assert found.differences.shares[1] < -0.8
-    assert np.sqrt(found.differences.covariance[0, 0]) < 0.01
+    known = np.sqrt(np.diag(found.differences.covariance))
+    assert found.differences.shares[1] < (-0.8 if unsure else -0.3)
+    assert known[1] > 0.4 if unsure else known[1] < 0.1
+    assert known[0] < 0.1
     (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 1), False)
-    assert cause.share[0] < 0.01 * fit.values[0]
+    assert (cause.share[0] < 0.01 * fit.values[0]) == unsure
 
 
 def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
