@@ -23,6 +23,7 @@ from plantar.whole_body.joints import (
     Inertia,
     _held_out,
     _judge,
+    _judge_all,
     identify_joints,
 )
 from plantar.whole_body.regularised_fit import HeldOutError, errors_of
@@ -244,6 +245,17 @@ def test_a_wide_interval_is_told_by_its_half() -> None:
     )  # fmt: skip
     assert _judge("viscous", -1.0, (-1.4, -0.6), 10.0, False)[1] == "negative, which is impossible"
     assert _judge("offset", 0.1, (-0.3, 0.5), 10.0, True)[0] == "usable", "near zero beside the torque"
+
+
+def test_beside_an_impossible_term_none_is_usable() -> None:
+    """A knee that walks about one radian: a spring of -38 N.m/rad and an offset of 37 N.m are one line."""
+    terms, values = ("viscous", "offset", "stiffness"), np.array([0.1, 37.0, -38.0])
+    told = [(-0.5, 0.7), (33.0, 41.0), (-42.0, -34.0)]
+    found = _judge_all(terms, values, told, 60.0, False)
+    assert [verdict for verdict, _ in found] == ["unidentifiable", "weak", "unidentifiable"]
+    assert "stiffness is negative" in found[1][1]
+    unsure = [*told[:2], (-42.0, 3.0)]
+    assert [verdict for verdict, _ in _judge_all(terms, values, unsure, 60.0, False)][1] == "usable"
 
 
 @pytest.mark.parametrize("value", [2.0, -2.0])

@@ -188,15 +188,33 @@ def _parameters(
         row, slides = fit.equation.first_joint_row + joint, int(fit.equation.tree.slides[joint])
         torque = float(np.sqrt(np.mean(np.concatenate([one.measured[row] for one in recordings]) ** 2)))
         still = all(np.ptp(one.motion.positions[:, joint]) < 1e-3 for one in recordings)
-        for term, value, std in zip(terms[name], fit.extras[row], trust.extras[row], strict=True):
-            interval = interval95(float(value), float(std), trust.freedom)
-            verdict, reason = _judge(term, float(value), interval, torque, still)
+        intervals = [
+            interval95(float(value), float(std), trust.freedom)
+            for value, std in zip(fit.extras[row], trust.extras[row], strict=True)
+        ]
+        verdicts = _judge_all(terms[name], fit.extras[row], intervals, torque, still)
+        found = zip(terms[name], fit.extras[row], trust.extras[row], intervals, verdicts, strict=True)
+        for term, value, std, interval, (verdict, reason) in found:
             rows.append(
                 JointParameter(
                     name, term, TERM_UNITS[term][slides], float(value), float(std), interval, verdict, reason
                 )
             )
     return tuple(rows)
+
+
+def _judge_all(
+    terms: Sequence[str], values: Array, intervals: Sequence[tuple[float, float]], torque: float, still: bool
+) -> list[tuple[Verdict, str]]:
+    """Verdict and reason of each term of a joint. Beside one that is surely negative and cannot be, none is usable:
+    what is taken for it is taken for the others too."""
+    known = list(zip(terms, values, intervals, strict=True))
+    verdicts = [_judge(term, float(value), interval, torque, still) for term, value, interval in known]
+    amiss = [term for term, _, interval in known if term in POSITIVE and interval[1] < 0]
+    if not amiss:
+        return verdicts
+    beside = f"beside it the joint's {amiss[0]} is negative, which is impossible"
+    return [("weak", beside) if verdict == "usable" else (verdict, reason) for verdict, reason in verdicts]
 
 
 def _judge(
