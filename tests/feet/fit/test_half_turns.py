@@ -64,6 +64,22 @@ def test_only_what_is_not_turned_round_gets_a_caution(walks: Any) -> None:
     assert cautioned_if_hardly_turned(asked, walks(0.9 * ROUND)) is asked
 
 
+def test_a_spring_that_short_steps_show_may_hold_an_element(walks: Any) -> None:
+    """Two slip angles of the rubber that slips soonest are 20 mrad; a foot that also stands and sways as far as shows
+    one in other logs is told by these."""
+    less = cautioned_if_hardly_turned(fit_of("kelvin_voigt"), walks(1.9))
+    assert less.choice is not None
+    assert "bend the foot by 0.019 rad from end to end" in str(less.choice.caution)
+    more = fit_of("kelvin_voigt")
+    assert cautioned_if_hardly_turned(more, walks(2.1)) is more
+    assert cautioned_if_hardly_turned(more, walks(1.9, steps=False)) is more
+    also = [*walks(1.9), *walks(1.9, steps=False)]
+    assert cautioned_if_hardly_turned(more, also) is more
+    assert more.choice is not None
+    small = replace(more, choice=replace(more.choice, reach=0.014))
+    assert cautioned_if_hardly_turned(small, also) is not small
+
+
 def standing(monkeypatch: pytest.MonkeyPatch, *turns: float) -> list[Any]:
     """A recording of a foot that stands and turns at these angles, in slip angles."""
     ways = [np.linspace(*pair, 40)[:-1] for pair in pairwise(turns)]

@@ -14,9 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.feet.fit.hidden_memory import SLIPS, SMALL
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.model_columns import path_of
+from plantar.models import KelvinVoigt
 
 ROUND = 2.0  # slip angles from one end of a path to the other
 STILL = 1e-6  # slip angles from sample to sample: rounding
@@ -24,16 +26,24 @@ HARDLY_TURNED = (
     "stances bend the foot by {:.1f} slip angles from end to end, where a full loop of hysteresis needs two: stiffness "
     "and slip torque can hardly be told apart (record longer steps, or stand and sway)"
 )
+SHORT = (
+    "stances bend the foot by {:.2g} rad from end to end: hysteresis that needs more would not show; in larger motions "
+    "the stiffness may be smaller (record longer steps, or stand and sway)"
+)
 
 
 def slip_angles_spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
     """How many slip angles the path of a usual stance spans; None of a foot that stands and a model without one."""
+    spanned = None if fit.slip_angle is None else _spanned(fit, recordings)
+    return None if spanned is None else spanned / fit.slip_angle
+
+
+def _spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
+    """From end to end of a usual stance [rad]; None of a foot that stands in all of them."""
     walks = [each for each in recordings if each.stances[fit.foot] is not None and each.name in fit.offsets]
-    if not walks or fit.slip_angle is None:
-        return None
     paths = [path_of(each, fit.foot, fit.axis, fit.imu_turned) for each in walks]
     spans = [float(np.ptp(path.deflection[run])) for path in paths for run in path.runs]
-    return float(np.median(spans)) / fit.slip_angle if spans else None
+    return float(np.median(spans)) if spans else None
 
 
 def slid_back(fit: AxisFit, recordings: Sequence[Recording]) -> float:
@@ -67,8 +77,16 @@ def _back(slider: Array) -> float:
 
 
 def cautioned_if_hardly_turned(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
-    """The fit, with a caution where the stances of a walk do not turn its element round."""
-    spanned = slip_angles_spanned(fit, recordings)
-    if fit.choice is None or fit.choice.caution is not None or spanned is None or spanned >= ROUND:
+    """The fit, with a caution where the stances of a walk do not turn its element round, or would not turn one round
+    that spring and damper hide: until it slips, it is a part of the spring."""
+    if fit.choice is None or fit.choice.caution is not None:
         return fit
-    return replace(fit, choice=replace(fit.choice, caution=HARDLY_TURNED.format(spanned)))
+    if isinstance(fit.model, KelvinVoigt):
+        stands = any(each.stances[fit.foot] is None and each.name in fit.offsets for each in recordings)
+        spanned, caution, least = _spanned(fit, recordings), SHORT, ROUND * SLIPS
+        spanned = None if stands and fit.choice.reach >= SMALL else spanned
+    else:
+        spanned, caution, least = slip_angles_spanned(fit, recordings), HARDLY_TURNED, ROUND
+    if spanned is None or spanned >= least:
+        return fit
+    return replace(fit, choice=replace(fit.choice, caution=caution.format(spanned)))
