@@ -47,12 +47,12 @@ def rehearsed(motion: attempt.Attempt, *found: Rehearsal) -> None:
 
 
 def test_a_limit_that_is_passed_is_held_to_less_where_it_is_passed_alone() -> None:
-    """Of 50 mm to the sides 48 are used where 44.5 may be: by half of that, as soles that roll exaggerate."""
+    """Of 50 mm to the sides 48 are used where 44.5 may be."""
     motion = standing()
     near = replace(FREE, factor=2.0, sole_margins=(0.04, 0.002))
     rehearsed(motion, replace(FREE, factor=0.5), near)
     motion.adapt()
-    less = (1 - SPARE) * np.sqrt((0.05 - KEPT) / (0.05 - 0.002))
+    less = (1 - SPARE) * (0.05 - KEPT) / (0.05 - 0.002)
     sides = KINDS.index("sides")
     assert np.delete(motion.shares, sides, axis=1) == pytest.approx(LEFT)
     # Half way between, in the logarithm of the stiffness, half of it.
@@ -66,7 +66,7 @@ def test_what_failed_far_from_a_limit_is_held_to_less_than_it_used() -> None:
     motion = standing(0.4)
     rehearsed(motion, *(replace(FREE, factor=each, friction=1.1 * FRICTION) for each in FACTORS))
     motion.adapt()
-    kept = (1 - SPARE) / np.sqrt(1.1)
+    kept = (1 - SPARE) / 1.1
     assert motion.shares[:, KINDS.index("friction")] == pytest.approx(0.4 * kept)
     rehearsed(motion, *(replace(FREE, factor=each, fell="it falls") for each in FACTORS))
     motion.adapt()
