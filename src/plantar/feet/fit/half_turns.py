@@ -34,8 +34,9 @@ SHORT = (
 
 def slip_angles_spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
     """How many slip angles the path of a usual stance spans; None of a foot that stands and a model without one."""
-    spanned = None if fit.slip_angle is None else _spanned(fit, recordings)
-    return None if spanned is None else spanned / fit.slip_angle
+    if fit.slip_angle is None or (spanned := _spanned(fit, recordings)) is None:
+        return None
+    return spanned / fit.slip_angle
 
 
 def _spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
