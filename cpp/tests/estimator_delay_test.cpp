@@ -62,8 +62,8 @@ void a_delay_within_the_rows_scatter_is_not_told() {
     const double by_delay = DELAY * TRUE_STIFFNESS[0];
     const bool sure = shaking == 0.0;
     check::that(((last.flags & LATE_WRENCH) != 0) == sure, "a delay beyond the rows' scatter");
-    check::that(last.pitch.damping.std > by_delay == sure, "is in the damping's deviation");
-    check::that(last.pitch.damping.std < 0.06 * by_delay == !sure, "and one within it is not");
+    check::that((last.pitch.damping.std > by_delay) == sure, "is in the damping's deviation");
+    check::that((last.pitch.damping.std < 0.06 * by_delay) != sure, "and one within it is not");
   }
 }
 
