@@ -25,6 +25,7 @@ from mcap_records import (
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
+from plantar.logs.readers.ros.bag import _unusable
 from plantar.logs.save import save_log
 
 
@@ -124,3 +125,11 @@ def test_a_time_that_no_stamp_holds_is_named(time: list[float], outside: float, 
         save_log(MotionLog("log", np.array(time), {}), tmp_path / "log.mcap")
     assert f"t = {outside:.10g} s" in str(refused.value)
     assert not any(tmp_path.iterdir())
+
+
+def test_header_clocks_that_never_meet_are_no_clocks() -> None:
+    """Stamps of one sensor that begin where another's have ended."""
+    clocks = [np.arange(0, 100), np.arange(50, 150), np.arange(101, 200)]
+    said = _unusable(clocks, ["/imu", "/joint_states", "/ft"])
+    assert said == "the header stamps of /ft do not overlap the others'"
+    assert _unusable([*clocks[:2], np.arange(99, 200)], ["/imu", "/joint_states", "/ft"]) is None
