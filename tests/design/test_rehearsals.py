@@ -47,12 +47,12 @@ def rehearsed(motion: attempt.Attempt, *found: Rehearsal) -> None:
 
 
 def test_a_limit_that_is_passed_is_held_to_less_where_it_is_passed_alone() -> None:
-    """Of 50 mm to the sides 48 are used where 44.5 may be: by half of that, as soles that roll exaggerate."""
+    """Of 50 mm to the sides 48 are used where 44.5 may be."""
     motion = standing()
     near = replace(FREE, factor=2.0, sole_margins=(0.04, 0.002))
     rehearsed(motion, replace(FREE, factor=0.5), near)
     motion.adapt()
-    less = (1 - SPARE) * np.sqrt((0.05 - KEPT) / (0.05 - 0.002))
+    less = (1 - SPARE) * (0.05 - KEPT) / (0.05 - 0.002)
     sides = KINDS.index("sides")
     assert np.delete(motion.shares, sides, axis=1) == pytest.approx(LEFT)
     # Half way between, in the logarithm of the stiffness, half of it.
@@ -66,7 +66,7 @@ def test_what_failed_far_from_a_limit_is_held_to_less_than_it_used() -> None:
     motion = standing(0.4)
     rehearsed(motion, *(replace(FREE, factor=each, friction=1.1 * FRICTION) for each in FACTORS))
     motion.adapt()
-    kept = (1 - SPARE) / np.sqrt(1.1)
+    kept = (1 - SPARE) / 1.1
     assert motion.shares[:, KINDS.index("friction")] == pytest.approx(0.4 * kept)
     rehearsed(motion, *(replace(FREE, factor=each, fell="it falls") for each in FACTORS))
     motion.adapt()
@@ -179,7 +179,8 @@ def test_each_draw_of_a_rehearsal_has_its_own_sensors_and_a_floor_for_its_steps(
         soft, told = rehearsal.rehearse(hrp2.robot(), Mock(), design_samples.told(), [0.5, 0.707])
         assert soft.feet_found(hrp2.robot()) == (500, 501, 502, 503)
         assert told.feet_found(hrp2.robot()) == (707, None, 709, 710)
-    assert seeds == [500, 501, 502, 503, 707, 708, 709, 710]
+        assert told.feet_found(hrp2.robot(), 2) == (707, None)
+    assert seeds == [500, 501, 502, 503, 707, 708, 709, 710, 707, 708]
     told_once = design_samples.told()
     for factor, world in zip((0.5, 0.707), played, strict=True):
         assert {(bush.pitch_stiffness, bush.roll_stiffness) for bush in (world.bushes or {}).values()} == {
@@ -200,3 +201,11 @@ def test_a_centre_of_pressure_at_the_border_does_not_say_how_much_too_large(marg
     assert "of a sole's border" in reason
     seen = attempt.used_by(replace(FREE, sole_margins=(6e-4, 0.04)))[0][0]
     assert seen == pytest.approx((0.05 - 6e-4) / (0.05 - KEPT))
+
+
+def test_the_ends_and_what_is_told_are_identified_in_more_draws_than_what_lies_between() -> None:
+    found = [Rehearsal(factor) for factor in (0.6, 0.8, 1.0, 1.5, 2.0)]
+    with patch.object(Rehearsal, "feet_found", lambda *given: given):
+        rows = attempt._with_results(hrp2.robot(), found)
+    assert [row.results[-1] for row in rows] == [4, 2, 4, 2, 4]
+    assert [row.factor for row in rows] == [0.6, 0.8, 1.0, 1.5, 2.0]

@@ -96,6 +96,21 @@ def test_beginnings_take_the_stances_in_turn_and_the_best_one_stands_as_its_own_
     assert any(np.array_equal(lines.frequencies, own) for each, own in stances if each == 1)
 
 
+@pytest.mark.parametrize("tries", [1, 3])
+def test_a_motion_that_was_rehearsed_is_bettered_by_small_steps(tries: int) -> None:
+    """Of what is linear every step helps, and goes as far as it may: a tenth of what is just allowed of each."""
+    reach = copy(design_samples.reach())
+    reach.element = 0 * reach.element
+    units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
+    slope = 1 / units
+    start = 0.5 * design_samples.coefficients()
+    linear = patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope)
+    with linear, patch.object(search, "TRIED", tries):
+        found = better_motion(reach, "widest", start)
+    moved = np.abs(found - start / reach.used(start)) / units
+    assert 0.1 * tries - 0.02 < moved.max() < 0.1 * tries + 0.02
+
+
 def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> None:
     """Of what is linear a linear program over all samples knows the optimum."""
     reach = copy(design_samples.reach())

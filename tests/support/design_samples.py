@@ -97,14 +97,14 @@ class RehearsedOnce:
 
 def identified_once(
     found: dict[int, tuple[FeetResult | None, ...]],
-) -> Callable[[Rehearsal, RobotModel], tuple[FeetResult | None, ...]]:
+) -> Callable[[Rehearsal, RobotModel, int], tuple[FeetResult | None, ...]]:
     """Rehearsals with one rollout have one result, which is kept in `found`."""
     feet_found = Rehearsal.feet_found
 
-    def identify(own: Rehearsal, robot: RobotModel) -> tuple[FeetResult | None, ...]:
+    def identify(own: Rehearsal, robot: RobotModel, draws: int) -> tuple[FeetResult | None, ...]:
         key = id(own.rollout)
         if key not in found:
-            found[key] = feet_found(own, robot)
+            found[key] = feet_found(own, robot, draws)
         return found[key]
 
     return identify
@@ -128,7 +128,7 @@ def designed_again() -> Design:
     with (
         patch.object(story, "best_motion", gentle_motion),
         patch.object(attempt, "rehearse", lambda *_: list(designed().rehearsals)),
-        patch.object(Rehearsal, "feet_found", lambda own, _: own.results),
+        patch.object(Rehearsal, "feet_found", lambda own, *_: own.results),
         patch.object(cores, "usable_cores", lambda: 1),
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))

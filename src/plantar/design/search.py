@@ -23,6 +23,8 @@ TRIED: Final = 8
 FOLLOWED: Final = 3
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.3, 0.01, 0.3  # how far a step goes, of coefficients that are just allowed
+# The same from a motion that was rehearsed: what that showed of limits, unknown to the linear robot, holds near it.
+NEAR: Final = 0.1
 # Motions beside one whose values are computed together: ten minutes of them fit into memory
 AT_ONCE: Final = 2
 # Programs of one step at most: each knows, beside what the motion comes near, the limits that the one before passed.
@@ -76,8 +78,9 @@ def best_motion(
 
 
 def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:
-    """The same from one beginning, a motion that is known, where limits are no longer what they were: a few steps."""
-    climb = _Climb(reach, criterion, known, 1.0 / reach.alone(), start, BEGIN)
+    """The same from one beginning, a motion that is known, where limits are no longer what they were: a few small
+    steps."""
+    climb = _Climb(reach, criterion, known, 1.0 / reach.alone(), start, NEAR, NEAR)
     climb.go(TRIED)
     return climb.best
 
@@ -113,8 +116,9 @@ class _Climb:
         units: Array,
         start: Array,
         far: float,
+        farthest: float = FARTHEST,
     ) -> None:
-        self._reach, self._units, self.far = reach, units, far
+        self._reach, self._units, self.far, self._farthest = reach, units, far, farthest
         self._criterion, self._known = criterion, known
         self._at(start / reach.used(start))
         self.least = float(self._value(self.best))
@@ -160,6 +164,6 @@ class _Climb:
         value = float(self._value(tried))
         if value < self.least:
             self._at(tried)
-            self.least, self.far = value, min(GROW * self.far, FARTHEST)
+            self.least, self.far = value, min(GROW * self.far, self._farthest)
         else:
             self.far *= SHRINK

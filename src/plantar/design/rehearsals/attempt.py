@@ -13,7 +13,7 @@ from plantar.cores import over_cores
 from plantar.design.collision import self_collision
 from plantar.design.legs import Legs
 from plantar.design.reach import BEND, FRICTION, KINDS, LIFT, Reach
-from plantar.design.rehearsals.rehearsal import Rehearsal, rehearse
+from plantar.design.rehearsals.rehearsal import DRAWS, Rehearsal, rehearse
 from plantar.design.soft_feet import Softness
 from plantar.design.trajectory import Trajectory
 from plantar.errors import MotionError
@@ -24,8 +24,8 @@ KEPT: Final = 0.0055
 # Share of their limits that motions may use before any is rehearsed: joints give way under load, of which limits that
 # are linear know nothing.
 LEFT: Final = 0.87
-# A limit that a rehearsal passes is held to half of what that is too much, as centres of pressure run ahead where a
-# sole begins to roll; at most so much less.
+# A limit that a rehearsal passes is held to less by what that is too much; at most so much less, as centres of pressure
+# run ahead where a sole begins to roll.
 SMALLER: Final = 0.85
 # m: a centre of pressure never leaves a sole. One at the border, to what its computation misses by, does not say how
 # much too large a motion is: its limit is held to as much less as it may.
@@ -84,7 +84,7 @@ class Attempt:
         rows = [self.factors.index(factor) for factor in self.rehearsals]
         used = np.array([used_by(one)[0] for one in self.rehearsals.values()])
         foretold, shares = self.reach.used_by_kind(self.coefficients)[rows], self.shares[rows]
-        change = np.clip((1 - SPARE) / np.sqrt(np.maximum(used, 1.0)), SMALLER, 1.0)
+        change = np.clip((1 - SPARE) / np.maximum(used, 1.0), SMALLER, 1.0)
         change[used <= 1] = 1.0
         self.first = [factor for factor, own in zip(self.rehearsals, used, strict=True) if own.max() > 1]
         # What lies between is held to shares between; what failed far from its limit is held to less than it used.
@@ -148,8 +148,14 @@ def until_it_holds(
 
 
 def _with_results(robot: RobotModel, rehearsals: list[Rehearsal]) -> list[Rehearsal]:
-    """The rehearsals with the feet identified from their recordings, as far as they can be."""
-    results = over_cores(lambda one: one.feet_found(robot), rehearsals)
+    """The rehearsals with the feet identified from their recordings, as far as they can be.
+
+    Half as often between the ends and the stiffness told: widths there are never less than their neighbours'.
+    """
+    whole = (rehearsals[0].factor, 1.0, rehearsals[-1].factor)
+    results = over_cores(
+        lambda one: one.feet_found(robot, DRAWS if one.factor in whole else DRAWS // 2), rehearsals
+    )
     return [replace(one, results=found) for one, found in zip(rehearsals, results, strict=True)]
 
 

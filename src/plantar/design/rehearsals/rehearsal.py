@@ -66,11 +66,11 @@ class Rehearsal:
         """Of a foot's centre of pressure from the border of its sole [m]."""
         return min(self.sole_margins)
 
-    def feet_found(self, robot: RobotModel) -> tuple[FeetResult | None, ...]:
-        """What `identify feet` finds in each of DRAWS recordings; None where it finds nothing."""
+    def feet_found(self, robot: RobotModel, draws: int = DRAWS) -> tuple[FeetResult | None, ...]:
+        """What `identify feet` finds in each of so many recordings; None where it finds nothing."""
         if self.rollout is None or self.world is None:
             return ()
-        recordings = (_recorded(self.factor, robot, self.rollout, self.world, draw) for draw in range(DRAWS))
+        recordings = (_recorded(self.factor, robot, self.rollout, self.world, draw) for draw in range(draws))
         return tuple(_found(robot, each.log) for each in recordings)
 
 
