@@ -111,6 +111,27 @@ SELDOM_RUN = (
         ("logs/readers/test_bag_clocks.py",),
     ),
     Mutant(
+        "feet/fit/axis_fit.py",
+        "deviations for squares",
+        "missed[1] ** 2 < PLACE_EXPLAINS * missed[0] ** 2",
+        "missed[1] < PLACE_EXPLAINS * missed[0]",
+        ("feet/fit/test_axis_fit.py",),
+    ),
+    Mutant(
+        "report/charts/strips.py",
+        "a disc's radius for its area",
+        "np.sqrt(row.share / largest)",
+        "row.share / largest",
+        ("report/charts/test_walk_charts.py",),
+    ),
+    Mutant(
+        "sensors/air_zero.py",
+        "one swing moves the slope",
+        "np.median((seen[second] - seen[first])",
+        "np.mean((seen[second] - seen[first])",
+        ("sensors/test_air_zero.py",),
+    ),
+    Mutant(
         "cli/fleet/inertia.py",
         "unseen logs are fitted, too",
         ' for log in group.logs if log.role == "fit"',
