@@ -132,6 +132,13 @@ SELDOM_RUN = (
         ("sensors/test_air_zero.py",),
     ),
     Mutant(
+        "report/charts/chart.py",
+        "level lines lose their points",
+        "(column[1:] != column[:-1]) | (row",
+        "(column[1:] != column[:-1]) & (row",
+        ("report/charts/test_chart.py",),
+    ),
+    Mutant(
         "cli/fleet/inertia.py",
         "unseen logs are fitted, too",
         ' for log in group.logs if log.role == "fit"',
