@@ -2,6 +2,8 @@
 #include "online/contradiction.hpp"
 
 #include <cmath>
+#include <numbers>
+#include <random>
 
 #include "check.hpp"
 #include "online/channel_watch.hpp"
@@ -61,6 +63,23 @@ void small_turns_add_up() {
   }
 }
 
+// The attitude's noise has no part in what the gyroscope tells: beside turns as large as what it makes, that is no fault.
+void noise_of_the_attitude_is_no_turn_of_its_own() {
+  constexpr double NOISE = 1e-3, EDGE = 2.0 * std::numbers::pi * TURN_BAND;  // rad, rad/s
+  const double left = 1.0 / (1.0 + PACE * PACE / (EDGE * EDGE));             // of the turns' power behind the band
+  const double rate = EDGE * NOISE * std::sqrt(2.0 / left);
+  TurnWatch watch;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, NOISE);
+  bool told = false;
+  for (int i = 0; i < 8000; ++i) {
+    const double time = PERIOD * i, angle = rate / PACE * std::sin(PACE * time) + noise(random);
+    const double turns[3] = {0.0, rate * std::cos(PACE * (time - 0.5 * PERIOD)), 0.0};
+    told = watch.differ({-std::sin(angle), 0.0, std::cos(angle)}, turns, PERIOD) || told;
+  }
+  check::that(!told, "an attitude with noise beside a gyroscope that is right");
+}
+
 // A joint that has stood while its twin moved, and moved again, may stand as long again.
 void what_has_stood_and_moved_again_is_not_doubted() {
   JointWatch one, twin;
@@ -93,6 +112,7 @@ void run() {
   what_has_stood_and_moved_again_is_not_doubted();
   a_fault_is_told_and_soon_over();
   small_turns_add_up();
+  noise_of_the_attitude_is_no_turn_of_its_own();
 }
 
 const check::Listed listed(run);

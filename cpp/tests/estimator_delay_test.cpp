@@ -46,6 +46,27 @@ void one_foot_alone_may_be_late(double delay, bool seen) {
   check::that(other.pitch.damping.half_width < 0.5 * TRUE_STIFFNESS[0] * delay, "the other one's is no wider for it");
 }
 
+// A shaking that the bush does not follow is alike in all groups, whose scatter says little of it: by the rows' scatter
+// a delay may be none, and it is neither told nor taken for sure.
+void a_delay_within_the_rows_scatter_is_not_told() {
+  constexpr double DELAY = 0.008, SHAKING = 0.25, SHAKES = 24.0;  // s, N·m, rad/s
+  for (const double shaking : {0.0, SHAKING}) {
+    FootEstimator estimator(two_feet());
+    FootEstimate last;
+    for (int i = 0; i < 12000; ++i) {
+      const double t = i / 200.0;
+      Sensors sensors(t, DELAY);
+      for (auto& w : sensors.wrench) w[4] += shaking * std::sin(SHAKES * t);
+      last = estimator.step(sensors.reading(t))[0];
+    }
+    const double by_delay = DELAY * TRUE_STIFFNESS[0];
+    const bool sure = shaking == 0.0;
+    check::that(((last.flags & LATE_WRENCH) != 0) == sure, "a delay beyond the rows' scatter");
+    check::that((last.pitch.damping.std > by_delay) == sure, "is in the damping's deviation");
+    check::that((last.pitch.damping.std < 0.06 * by_delay) != sure, "and one within it is not");
+  }
+}
+
 // Deviations are found anew where some seconds of rows end; until then they grow by what the values have moved.
 void what_a_value_has_moved_is_in_its_deviation() {
   constexpr double BEGINS = 40.0, CREEPS = 0.5;  // s; N·m/rad a second, in pitch
@@ -69,6 +90,7 @@ void run() {
   for (const double delay : {0.01, 0.03, -0.01}) a_delay_that_was_told_wrongly_is_seen(delay);
   one_foot_alone_may_be_late(0.015, true), one_foot_alone_may_be_late(0.003, false);
   what_a_value_has_moved_is_in_its_deviation();
+  a_delay_within_the_rows_scatter_is_not_told();
 }
 
 const check::Listed listed(run);

@@ -11,6 +11,7 @@
 #include "online/edge_watch.hpp"
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
+#include "online/shaking.hpp"
 #include "online/slip_gate.hpp"
 
 namespace gates_test {
@@ -38,6 +39,19 @@ void a_zero_is_the_mean_of_swings_without_their_ends() {
   check::near(zero.value()[2], 8.0, 1e-9, "two swings count alike");
 }
 
+// A foot that touches for ten milliseconds of each piece is not calm, though every piece ends as it began.
+void a_swing_that_touches_is_none() {
+  for (const double touch : {0.9, 1.1}) {
+    AirZero zero;
+    for (int tick = 0; tick < 1000; ++tick) {
+      const double read = 7.0 + (tick % 50 >= 20 && tick % 50 < 30 ? touch * CALM_AIR * WEIGHT : 0.0);
+      zero.swing({0.0, 0.0, read, 0.0, 0.0, 0.0}, read, WEIGHT, PERIOD);
+    }
+    zero.landed();
+    check::that(zero.known() == (touch < 1.0), "calm is what changes by less than a twentieth of the weight");
+  }
+}
+
 // Of a right sole beside a left one; whether a slide was sure behind the filter's start.
 template <typename Heading>
 bool slides(double left, const Heading& right) {
@@ -58,6 +72,45 @@ void a_heading_that_passes_half_a_turn_is_no_slide() {
     check::that(!slides(back, sways), "a robot that faces back");
     check::that(slides(back, turns), "one sole that turns");
   }
+}
+
+// Slower than any slide, for longer than a slide takes.
+void a_creep_is_no_slide() {
+  SlipGate gate;
+  bool told = false;
+  for (int tick = 0; tick < 6000; ++tick) {
+    const double time = PERIOD * tick, crept = 0.0019 * std::clamp(time - 4.0, 0.0, 0.8);
+    const auto verdict = gate.step({0.0, 0.1, 0.0}, {crept, -0.1, 0.0}, PERIOD);
+    told = told || (time > 1.0 && verdict != SlipGate::Verdict::none);
+  }
+  check::that(!told, "a creep of two millimetres a second");
+}
+
+// At the band's edge each of two poles lets half of the power of what is quick through.
+void a_foot_is_shaken_by_what_is_quicker_than_any_load() {
+  const auto struck = [](double share, double frequency) {
+    Shaking shaking(WEIGHT);
+    bool told = false;
+    for (int tick = 0; tick < 2500; ++tick) {
+      const double since = PERIOD * tick - 2.0, turn = 2.0 * std::numbers::pi * frequency * since;
+      const double force[3] = {0.0, 0.0, since > 0.0 ? share * WEIGHT * std::sqrt(2.0) * std::sin(turn) : 0.0};
+      told = shaking.step(force, PERIOD) || told;
+    }
+    return told;
+  };
+  check::that(!struck(0.85 * 2.0 * SHAKING_SHARE, SHAKING_BAND), "at the band's edge, by less than two such shares");
+  check::that(struck(1.2 * 2.0 * SHAKING_SHARE, SHAKING_BAND), "by more");
+  check::that(!struck(10.0 * SHAKING_SHARE, 0.2 * SHAKING_BAND), "what is slow is a load");
+}
+
+void what_is_quicker_than_the_band_is_no_lean() {
+  EdgeWatch watch(WEIGHT, 0.06);
+  bool told = false;
+  for (int tick = 0; tick < 400; ++tick) {
+    const double noise = tick == 0 ? 0.0 : tick % 2 ? 0.01 : -0.01;
+    told = watch.step(0.004, 300.0, {noise, 0.0}, {0.0, 0.0}, PERIOD) || told;
+  }
+  check::that(!told, "noise of an angle on an edge");
 }
 
 void an_edge_is_told_from_where_its_visit_began() {
@@ -150,7 +203,10 @@ bool memory_excluded(double size) {
     watch.work();
   }
   check::that(!watch.seen(), "there is none");
-  return watch.excluded();
+  const bool excluded = watch.excluded();
+  watch.restart();
+  check::that(!watch.excluded() && !watch.seen(), "nothing is known of it anew");
+  return excluded;
 }
 
 void a_memory_is_excluded_by_motions_that_would_have_shown_it() {
@@ -160,7 +216,11 @@ void a_memory_is_excluded_by_motions_that_would_have_shown_it() {
 
 void run() {
   a_zero_is_the_mean_of_swings_without_their_ends();
+  a_swing_that_touches_is_none();
   a_heading_that_passes_half_a_turn_is_no_slide();
+  a_creep_is_no_slide();
+  a_foot_is_shaken_by_what_is_quicker_than_any_load();
+  what_is_quicker_than_the_band_is_no_lean();
   an_edge_is_told_from_where_its_visit_began();
   the_middle_of_a_small_sole_is_not_its_edge();
   a_delay_stays_in_doubt_until_it_is_excluded();

@@ -1,6 +1,7 @@
 // What readings that are later than was told do: torques to stiffness and damping, an IMU to what the body's turning
 // explains.
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "check.hpp"
@@ -61,7 +62,30 @@ void an_imu_behind_the_encoders_is_told_by_the_turning(double later, bool joints
   check::that(std::abs(found.value - STIFF * later) < 3.0 * std::max(found.grouped, found.white), "and how surely");
 }
 
+// Encoders' noise differs from the angle's in the turning's column, too. It tells nothing up to eight times of what the
+// angle's noise would be as a rate's: a third of the squared edge of what rows can hold.
+void noise_in_the_turning_tells_no_delay() {
+  constexpr double NOISE = 1e-5;  // rad
+  const RegressionPrior prior = {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0, 0.1},
+                                 {}, {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9, 1e-9}, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, ROW};
+  const double edge = std::numbers::pi / ROW;
+  for (const double times : {6.0, 11.0}) {
+    AxisRegression axis(prior);
+    std::mt19937 random(10);
+    std::normal_distribution<double> noise(0.0, NOISE * edge * std::sqrt(times / 3.0));
+    for (int i = 0; i < 2400; ++i) {
+      const double t = ROW * i, angle = 0.01 * std::sin(2.0 * t), rate = 0.02 * std::cos(2.0 * t);
+      RegressionRow row = {{1.0, t}, {angle, rate, 0.0, 0.0, 0.0, 0.0, 0.0, rate + noise(random)}, 0.0, {NOISE * NOISE}};
+      row.torque = 800.0 * angle + DAMPING_TRUTH * rate + 0.01 * std::sin(1e5 * i);
+      axis.add(row, ROW), axis.work();
+    }
+    for (int i = 0; i < 4; ++i) axis.work();
+    check::that((axis.values().turned.grouped > 0.0) == (times > 8.0), "a turning that is no more than noise");
+  }
+}
+
 void run() {
+  noise_in_the_turning_tells_no_delay();
   what_a_delay_does_is_known_beforehand();
   for (const double later : {0.0, 0.01, -0.01}) an_imu_behind_the_encoders_is_told_by_the_turning(later, true);
   an_imu_behind_the_encoders_is_told_by_the_turning(0.01, false);

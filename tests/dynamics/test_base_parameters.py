@@ -9,6 +9,7 @@ import pytest
 import example_robots
 from example_robots import random_motion
 from plantar.dynamics import BaseParameters, Equation, base_parameters, regressor
+from plantar.dynamics.base_parameters import parameter_name
 
 ROBOTS = [
     (example_robots.TALOS, True),
@@ -68,6 +69,25 @@ def test_an_expression_says_what_is_lumped() -> None:
         "elbow.my",
         "elbow.Izz",
     )
+
+
+def test_expressions_say_each_share_with_its_sign() -> None:
+    """Read back term by term, they are the grouping."""
+    base = base_parameters(Equation(example_robots.model(example_robots.UR5)))
+    number = {parameter_name(base.links, k): k for k in range(base.grouping.shape[1])}
+    negative = 0
+    for row, expression in enumerate(base.expressions):
+        own, *rest = expression.split(" ")
+        found = np.zeros(len(number))
+        found[number[own]] = 1.0
+        while rest:
+            sign, rest = rest[0], rest[1:]
+            size, rest = (1.0, rest) if rest[0] in number else (float(rest[0]), rest[1:])
+            assert size > 0
+            negative += sign == "-" and size != 1.0
+            found[number[rest[0]]], rest = (size if sign == "+" else -size), rest[1:]
+        np.testing.assert_allclose(found, base.grouping[row], atol=1e-5)
+    assert negative > 3
 
 
 def test_they_are_the_same_every_time_and_embed_without_loss() -> None:

@@ -127,6 +127,17 @@ def test_the_middle_point_slides_and_the_others_have_its_friction(target: str, t
     )
 
 
+def test_a_link_that_rubs_otherwise_leaves_its_friction_to_the_points(tmp_path: Path) -> None:
+    urdf = write_urdf(tmp_path / "biped.urdf")
+    rubs = '<contact><lateral_friction value="0.6"/></contact></link>'
+    link, rest = urdf.read_text().split('<link name="left_ankle">')
+    urdf.write_text(f'{link}<link name="left_ankle">{rest.replace("</link>", rubs, 1)}')
+    export(result(urdf), "bullet-contact", tmp_path / "out.urdf")
+    assert points_of("bullet-contact", tmp_path / "out.urdf", "left")[:, 6] == pytest.approx(0.6)
+    right = points_of("bullet-contact", tmp_path / "out.urdf", "right")[:, 6]
+    assert right.max() == pytest.approx(0.8 / 0.42, rel=0.05)
+
+
 def test_what_touches_is_taken_from_the_model(tmp_path: Path) -> None:
     out = tmp_path / "out.sdf"
     model = write_sdf(tmp_path / "robot.sdf", "1.9")

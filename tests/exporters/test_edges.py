@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from pathlib import Path
 from typing import Any
@@ -198,6 +199,11 @@ def test_choreonoid_has_means_and_openhrp_each_joint(feet: dict[str, Any], tmp_p
     }  # fmt: skip
     assert comments(text)[:2] == ["Feet of 'biped', identified by plantar 0.1.0,", "for Choreonoid."]
     assert codes == {"export_rigid": "info", "export_mean": "warning"}
+    flat = copy.deepcopy(feet)
+    flat["parameters"] = [row for row in flat["parameters"] if row["axis"] != "z"]
+    notes = export(flat, "choreonoid", tmp_path / "flat")
+    assert "springT" not in yaml.safe_load((tmp_path / "flat").read_text())["bush"]
+    assert any(note.text.startswith("z is not identified: springT and dampingT are left") for note in notes)
     text, codes = written(feet, "openhrp", tmp_path, with_offset=True)
     config = dict(line.split(": ", 1) for line in text.splitlines() if not line.startswith("#"))
     assert config["robot_model_name"] == "biped"

@@ -15,6 +15,7 @@ from plantar.exporters.contact.alone import INERTIA_TIME, Measured, contact_attr
 from plantar.exporters.contact.fit import LOADS
 from plantar.exporters.contact.points import Point, PointFoot, points_for, sides_of
 from plantar.exporters.contact.springs import (
+    RADIUS,
     placed,
     pushes,
     said,
@@ -119,6 +120,18 @@ def test_notes_say_the_errors_angles_and_millimetres_that_the_points_have() -> N
     assert f"more than {edges * lower:.3g} N; below that {edges:.4g} N/m" in notes["z"]
     wrong = replace(FOOT, springs=(replace(SPRINGS[0], stiffness=3.5e5), *SPRINGS[1:]))
     assert (vertical_note(wrong, made).severity, vertical_note(FOOT, made).severity) == ("warning", "info")
+
+
+def test_points_stand_below_the_bush_each_by_its_own_depth() -> None:
+    """Sunk as the load asks for, each is pressed by what its tip is below the floor."""
+    made = spring_foot(FOOT, WEIGHT)
+    points = placed(replace(FOOT, centre=np.array([0.01, -0.02, 0.03])), made, WEIGHT)
+    floor = 0.03 - made.depth + made.sink(LOADS[0] * WEIGHT)  # in the ankle's frame
+    for one in points:
+        pressed = max(floor - (one.centre[2] - RADIUS), 0.0)
+        assert one.push == pytest.approx(one.point.stiffness * pressed)
+        assert one.centre[:2] == pytest.approx([one.point.x + 0.01, one.point.y - 0.02])
+    assert sum(one.push for one in points) == pytest.approx(LOADS[0] * WEIGHT)
 
 
 def test_outer_points_rub_for_the_one_that_slides() -> None:

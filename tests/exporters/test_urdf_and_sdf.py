@@ -233,6 +233,46 @@ def test_an_sdf_made_from_a_urdf_keeps_each_links_centre_of_mass(feet: dict[str,
     assert [float(part) for part in shin.findtext("pose", "").split()] == [0, 0, -0.2, 0, 0, 0]
 
 
+def test_an_sdf_made_from_a_urdf_keeps_friction_meshes_and_their_scale(
+    feet: dict[str, Any], urdf: Path
+) -> None:
+    mesh = '<visual><geometry><mesh filename="shin.stl" scale="1 2 0.5"/></geometry></visual></link>'
+    text = urdf.read_text().replace("</link>", mesh, 1)
+    text = text.replace("</joint>", '<dynamics damping="0.5" friction="0.25"/></joint>', 1)
+    urdf.write_text(text)
+    export(feet, "sdf", urdf.with_name("out.sdf"))
+    root = ET.parse(urdf.with_name("out.sdf")).getroot()
+    (found,) = root.iter("mesh")
+    assert (found.findtext("uri"), found.findtext("scale", "").split()) == ("shin.stl", ["1", "2", "0.5"])
+    jointed = re.search(r'<joint name="(\w+)"', text)
+    assert jointed is not None
+    axis = root.find(f".//joint[@name='{jointed[1]}']/axis/dynamics")
+    assert axis is not None
+    assert (axis.findtext("damping"), axis.findtext("friction")) == ("0.5", "0.25")
+
+
+def test_a_joint_that_sdformat_has_no_word_for_is_named(feet: dict[str, Any], urdf: Path) -> None:
+    kinds = re.sub(r'(<joint name="left_hip" type=)"\w+"', r'\1"planar"', urdf.read_text())
+    assert "planar" in kinds
+    urdf.write_text(kinds)
+    with pytest.raises(
+        ExportError, match=r"value 'planar': joint 'left_hip' is of a type that is not carried"
+    ):
+        export(feet, "sdf", urdf.with_name("out.sdf"))
+
+
+def test_a_foot_without_a_shape_has_a_plate_down_to_its_sole(urdf: Path, tmp_path: Path) -> None:
+    urdf.write_text(re.sub(r'<collision name="foot">.*?</collision>', "", urdf.read_text()))
+    notes = export(result(urdf), "sdf", tmp_path / "o.sdf")
+    assert {note.text.split(":")[0] for note in notes if note.code == "export_plate"} == {"left", "right"}
+    plate = ET.parse(tmp_path / "o.sdf").getroot().find(".//collision[@name='right_bush_plate']")
+    assert plate is not None
+    length, width, height = map(float, plate.findtext("geometry/box/size", "").split())
+    x, y, z = map(float, plate.findtext("pose", "").split()[:3])
+    assert (length, width) == pytest.approx((0.2, 0.12))
+    assert (x, y, z - height / 2) == pytest.approx((-CENTRE[0], 0.0, SOLE_Z - CENTRE[2]))
+
+
 def test_a_second_sdf_export_leaves_one_spring_in_each_joint(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "sdf", tmp_path / "one.sdf")
     softer = copy.deepcopy(feet)

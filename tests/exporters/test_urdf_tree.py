@@ -83,3 +83,31 @@ def test_an_origin_is_read_back_as_it_was_set(tmp_path: Path) -> None:
         set_origin(element, place)
         np.testing.assert_allclose(origin_of(element), place, atol=1e-9)
     assert len(tree.joints["c"].findall("origin")) == 1
+
+
+CORNERS = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+
+
+def stl() -> str:
+    faces = [[CORNERS[k] for k in face] for face in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))]
+    corners = "".join(
+        "facet normal 0 0 1\nouter loop\n"
+        + "".join(f"vertex {x} {y} {z}\n" for x, y, z in face)
+        + "endloop\nendfacet\n"
+        for face in faces
+    )
+    return f"solid tip\n{corners}endsolid tip\n"
+
+
+def test_a_mesh_reaches_as_far_as_its_scale_says(tmp_path: Path) -> None:
+    """Turned by a right angle about z and moved to (1, 2, 3), as its collision is."""
+    (tmp_path / "tip.stl").write_text(stl())
+    tree = tree_of(tmp_path, '<mesh filename="tip.stl" scale="0.5 2 3"/>')
+    points = tree.points(tree.links["plate"].find("collision"))  # type: ignore[arg-type]
+    assert points is not None
+    scaled = np.array(CORNERS) * [0.5, 2.0, 3.0]
+    wanted = np.column_stack([1 - scaled[:, 1], 2 + scaled[:, 0], 3 + scaled[:, 2]])
+    found = np.unique(np.round(points, 6), axis=0)
+    np.testing.assert_allclose(found, wanted[np.lexsort(wanted.T[::-1])], atol=1e-6)
+    gone = tree_of(tmp_path, '<mesh filename="gone.stl"/>')
+    assert gone.points(gone.links["plate"].find("collision")) is None  # type: ignore[arg-type]

@@ -9,8 +9,9 @@ import pytest
 
 from biped import drawn_up, record, sway
 from plantar.contact.reasons import Reason
+from plantar.conventions import GRAVITY
 from plantar.errors import DataError, RobotError
-from plantar.feet.prepare_log import checked, prepare
+from plantar.feet.prepare_log import _lifted, checked, prepare
 from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
 from plantar.online.estimator_model import estimator_model
 from plantar.robot.model import RobotModel
@@ -103,6 +104,17 @@ def test_one_swing_is_enough_of_a_foot_that_is_lifted(robot: RobotModel) -> None
     log = log.with_columns({column: left + ZERO[2], "wrench.right.force.z": both - left})
     (row,) = prepare(robot, drawn_up(log, "left", swing), "fit").zeros
     assert (row.foot, row.force[2]) == ("left", pytest.approx(ZERO[2], abs=0.5))
+
+
+def test_a_foot_above_one_that_carries_nothing_has_not_stepped(robot: RobotModel) -> None:
+    """A robot on a hoist with one leg drawn up: its sole is higher than the other, which does not carry it."""
+    raw = prepare(robot, record(sway("sway", duration=4.0)), "fit").raw
+    left, right = raw["left"], raw["right"]
+    up = replace(left, sole_position=left.sole_position + np.array([0.0, 0.0, 0.1]))
+    for share, lifted in ((0.4, False), (0.6, True)):
+        carries = replace(right, force_z=np.full(len(right.force_z), share * robot.mass * GRAVITY))
+        found = _lifted(robot, {"left": up, "right": carries}, "left")
+        assert found.all() == found.any() == lifted
 
 
 def always_standing(robot: RobotModel, *feet: str) -> RobotModel:

@@ -73,7 +73,8 @@ def test_the_command_writes_what_identify_inertia_writes(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     rows = [("g", "biped.yaml", Path(log).name, "", "", "") for log in logs(folder)[:2]]
-    manifest, out = write_manifest(folder / "fleet.csv", rows), folder / "out"
+    unseen = ("g", "biped.yaml", "log_2.parquet", "validate", "", "")  # takes no part
+    manifest, out = write_manifest(folder / "fleet.csv", [*rows, unseen]), folder / "out"
     assert run("fleet", "inertia", manifest, "--out", out, "--workers", "1", "--quiet") == 0
     assert_same(DynamicsResult.load(out), identify_inertia(folder / "biped.yaml", logs(folder)[:2]))
     assert (out / "identified.urdf").is_file()

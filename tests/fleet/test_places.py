@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
@@ -122,3 +123,17 @@ def test_an_error_without_words_is_told_by_its_kind(monkeypatch: pytest.MonkeyPa
         monkeypatch.setattr(Closed, name, refuse)
     with pytest.raises(PlantarError, match=r"closed://bucket/log\.csv.* cannot be read: Refusal"):
         stamp_of("closed://bucket/log.csv")
+
+
+def test_a_folder_is_another_where_one_of_its_files_was_written_anew(tmp_path: Path) -> None:
+    """By the time alone: its size stays."""
+    inner = tmp_path / "bag" / "inner"
+    inner.mkdir(parents=True)
+    for name in ("a", "b"):
+        (inner / name).write_bytes(b"12345")
+    before = stamp_of(str(tmp_path / "bag"))
+    assert before.size == 10
+    assert stamp_of(str(tmp_path / "bag")) == before
+    os.utime(inner / "b", ns=(0, 1_000))
+    after = stamp_of(str(tmp_path / "bag"))
+    assert (after.size, after != before) == (10, True)

@@ -13,7 +13,7 @@ from plantar.faults.gaps import check_gaps
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.save import save_log
-from plantar.logs.stretches import most_moving
+from plantar.logs.stretches import Stretches, most_moving
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import evenly_sampled, sampling
 from plantar.signals.thinning import thinned
@@ -60,6 +60,16 @@ def test_what_moves_is_taken_and_the_rest_told_of() -> None:
 def test_ten_minutes_are_worked_on_as_they_are(seconds: float, whole: bool) -> None:
     log = long_log(seconds, x=np.zeros(round(20 * seconds)))
     assert (most_moving(log) is log) == whole
+
+
+def test_where_the_last_row_is_lost_the_one_before_ends_its_stretch() -> None:
+    """Two stretches of five rows, of which the last two are emptied: one loses both, one a row within."""
+    blank = np.array([0, 0, 0, 1, 1, 0, 0, 0, 1, 1], bool)
+    lost = np.array([0, 0, 0, 1, 1, 0, 1, 0, 0, 0], bool)
+    found = Stretches(np.ones(10, bool), blank, 10.0).without(lost)
+    assert found.blank.tolist() == [False, False, True, False, False, True, True]
+    half = Stretches(np.ones(10, bool), blank, 10.0).without(np.arange(10) == 4)
+    assert half.blank.tolist() == [False, False, False, True, False, False, False, True, True]
 
 
 def test_each_torque_has_its_own_stretches_by_its_size_and_its_changes() -> None:

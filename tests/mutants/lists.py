@@ -23,6 +23,7 @@ from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
 from once_unnoticed import ONCE_UNNOTICED
 from other_robots import OTHER_ROBOTS
+from seldom_run import SELDOM_RUN
 from sensor_faults import SENSOR_FAULTS
 from shared_work import SHARED_WORK
 from standing_soles import STANDING_SOLES
@@ -53,5 +54,6 @@ LISTS = {
     "standing_soles": STANDING_SOLES,
     "other_robots": OTHER_ROBOTS,
     "unlisted": UNLISTED,
+    "seldom_run": SELDOM_RUN,
     "by_hand": BY_HAND,
 }

@@ -51,6 +51,7 @@ def test_a_plain_one_is_read() -> None:
         ("robot", "sdf", "its root is <sdf>"),
         ('xyz=" 0 0  -1"', 'xyz="0 0 -450"', "joint 'ankle' is 20 m away or more; are these millimetres?"),
         ('xyz="0 0 .1"', 'xyz="0 0 100"', "value '0 0 100': link 'trunk' is 20 m away or more"),
+        ('type="revolute"', 'type="ball"', "robot.urdf: is not a readable URDF: The XML stream does not contain"),
         ("</robot>", "", "is not a readable URDF: no element found: line 8, column 0"),
         ('<link name="foot"/>', '<link name="foot"/><link name="foot"/>', "link 'foot' is there twice"),
         ("</robot>", '<joint name="ankle" type="fixed"/></robot>', "joint 'ankle' is there twice"),

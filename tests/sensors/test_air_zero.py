@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.sensors.air_zero import air_zero
+from plantar.sensors.air_zero import _usual_slope, air_zero
 
 WEIGHT, PERIOD = 700.0, 0.02
 ZERO = np.array([12.0, -17.0, -60.0, 0.4, -0.2, 0.8])
@@ -167,3 +167,12 @@ def test_a_zero_s_drift_is_three_of_its_deviations(drift: float, followed: bool)
     x, _, z = found.middle[:3]
     told = f"reads {x:.3g}, 0, {z:.3g} N (8 swings, which differ by {found.scatter[0]:.2g} N)"
     assert told in found.text
+
+
+def test_one_swing_that_touches_moves_no_slope() -> None:
+    """Of nine swings on a line one is far off: of all 36 pairs 8 know of it."""
+    when = np.cumsum(np.random.default_rng(0).uniform(1.0, 3.0, 9))
+    slope = np.array([0.5, -0.2, 2.0, 0.01, 0.0, -0.03])
+    seen = slope * when[:, None] + 7.0
+    seen[3] += 100.0
+    np.testing.assert_allclose(_usual_slope(when, seen), slope, atol=1e-12)

@@ -10,8 +10,9 @@ import pytest
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.reasons import Reason
-from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.axis_fit import _where_a_spring_turns, fit_axis
 from plantar.feet.fit.hidden_memory import TORN, UNBELIEVED, UNTIMED, has_memory, moved_by_memory
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
@@ -130,3 +131,21 @@ def test_without_noise_nothing_richer_is_tried_and_under_a_strange_torque_neithe
 def test_a_foot_without_samples_has_no_fit() -> None:
     nothing = [one.without(FOOT, np.ones(6000, dtype=bool), Reason.IMPACT) for one in recordings(LINEAR)]
     assert fit_axis(nothing, FOOT, "pitch", FeetSettings()) is None
+
+
+@pytest.mark.parametrize(("share", "moves"), [(0.4, True), (0.6, False)])
+def test_another_place_has_to_explain_half_of_the_squares(share: float, moves: bool) -> None:
+    """A torque by a horizontal force 4 mm above, and one that is nobody's with the `share` of the squares of both."""
+    made = []
+    for one in recordings(LINEAR, noise=0.0):
+        time = one.time
+        force, strange = 100.0 * np.sin(2 * np.pi * 0.53 * time), 0.4 * np.sin(2 * np.pi * 0.71 * time)
+        bush = one.bushes[FOOT]
+        more = 4e-3 * force + strange * np.sqrt(share / (1 - share))
+        wrench = bush.wrench + force[:, None] * (np.arange(6) == 0)
+        state = replace(bush, wrench=wrench, torque=bush.torque + more[:, None])
+        turns = {FOOT: np.zeros((len(time), 2, 3))}
+        made.append(replace(one, bushes={FOOT: state}, raw={FOOT: state}, imu_turns=turns))
+    spring = fitted(made, model="kelvin_voigt")
+    found = _where_a_spring_turns(spring, made, PlaceSpread(0.005, 0.005, 0.0), False)
+    assert (found is not spring) == moves

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 import struct
 from pathlib import Path
 
@@ -25,6 +26,7 @@ from mcap_records import (
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
+from plantar.logs.readers.ros.bag import _unusable
 from plantar.logs.save import save_log
 
 
@@ -124,3 +126,27 @@ def test_a_time_that_no_stamp_holds_is_named(time: list[float], outside: float, 
         save_log(MotionLog("log", np.array(time), {}), tmp_path / "log.mcap")
     assert f"t = {outside:.10g} s" in str(refused.value)
     assert not any(tmp_path.iterdir())
+
+
+def test_header_clocks_that_never_meet_are_no_clocks() -> None:
+    """Stamps of one sensor that begin where another's have ended."""
+    clocks = [np.arange(0, 100), np.arange(50, 150), np.arange(101, 200)]
+    said = _unusable(clocks, ["/imu", "/joint_states", "/ft"])
+    assert said == "the header stamps of /ft do not overlap the others'"
+    assert _unusable([*clocks[:2], np.arange(99, 200)], ["/imu", "/joint_states", "/ft"]) is None
+
+
+def test_rows_without_a_message_are_counted_with_the_broken_ones(tmp_path: Path) -> None:
+    """Two of five rows hold nothing."""
+    path = tmp_path / "log.db3"
+    with sqlite3.connect(path) as file:
+        file.execute("CREATE TABLE topics(id INTEGER, name TEXT, type TEXT, serialization_format TEXT)")
+        file.execute("CREATE TABLE messages(id INTEGER, topic_id INTEGER, timestamp INTEGER, data BLOB)")
+        file.execute("INSERT INTO topics VALUES (1, '/ft/left', 'geometry_msgs/msg/WrenchStamped', 'cdr')")
+        for place in range(5):
+            data = None if place in (1, 3) else unstamped_wrench([0.0, 0.0, float(place), 0.0, 0.0, 0.0])
+            file.execute("INSERT INTO messages VALUES (?, 1, ?, ?)", (place, 10_000_000 * place, data))
+    log = open_log(path)
+    assert len(log) == 3
+    (told,) = [note.text for note in log.notes if note.code == "messages_broken"]
+    assert told == "log.db3: /ft/left: 2 of 5 messages cannot be decoded and are left out"

@@ -120,6 +120,19 @@ def test_a_command_does_not_fill_in_for_a_measurement(original: MotionLog, tmp_p
     assert not [name for name in log.columns if name.endswith(".velocity")]
     np.testing.assert_array_equal(log.column("joint.neck.position"), original.column("joint.neck.position"))
     assert "joint_topics" in {note.code for note in log.notes}
+    wanted = open_log(tmp_path / "bag", make_robot(tmp_path / "robot", topics={"joints": "/joint_wanted"}))
+    np.testing.assert_array_equal(
+        wanted.column("joint.left_leg_x.position"), commands["joint.left_leg_x.position"]
+    )
+
+
+def test_topics_of_no_sensor_are_told(original: MotionLog, tmp_path: Path) -> None:
+    hand = {name.replace("wrench.left", "wrench.hand"): values for name, values in original.columns.items()}
+    save_log(MotionLog("log", original.time, {**original.columns, **hand}), tmp_path / "log.mcap")
+    log = open_log(tmp_path / "log.mcap", make_robot(tmp_path / "robot"))
+    assert not [name for name in log.columns if "hand" in name]
+    told = [note.text for note in log.notes if note.code == "topics_ignored"]
+    assert told == ["log.mcap: topics of no sensor in the robot file, not used: /wrench/hand"]
 
 
 def reshaped(original: MotionLog, folder: Path, names: list[list[str]], topic: str = "") -> Path:

@@ -11,8 +11,9 @@ import pytest
 from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log, text_numbers
+from plantar.logs.readers import mc_rtc, open_log, text_numbers
 from plantar.logs.readers.force_cells import wrench_of_cells
+from plantar.logs.readers.ports import joints_for
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import Stream, increasing, merge, origin, resample
 from plantar.logs.readers.text_numbers import read_numbers
@@ -242,3 +243,21 @@ def test_mat_files_of_another_kind_say_what_to_write_instead(tmp_path: Path) -> 
         file["hip_angle"] = np.zeros(4)
     with pytest.raises(LogError, match=r"holds no signal of a robot logger, but hip_angle .*writetable"):
         open_log(tmp_path / "own.mat")
+
+
+@pytest.mark.parametrize("magic", [b"ANNA", b"ANN", b"XNNE", b"ANNZ"])
+def test_an_mc_rtc_log_begins_as_one(magic: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "log.bin"
+    path.write_bytes(magic)
+    with pytest.raises(LogError, match="is not an mc_rtc binary log"):
+        mc_rtc.read(path, None, ReadLimit(path, []))
+
+
+def test_joints_without_names_have_the_urdfs_order_where_their_number_agrees(tmp_path: Path) -> None:
+    robot, notes = make_robot(tmp_path), list[Note]()
+    count = len(robot.joint_names)
+    assert joints_for(count, robot, LOG, notes) == robot.joint_names
+    assert [(note.code, note.severity) for note in notes] == [("joint_order", "warning")]
+    for wrong, known in ((count + 1, robot), (count, None)):
+        with pytest.raises(LogError, match=f"does not name its {wrong} joints"):
+            joints_for(wrong, known, LOG, notes)

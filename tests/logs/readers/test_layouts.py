@@ -73,3 +73,22 @@ def test_lengths_that_lie_are_broken_messages(kind: str, encoding: str) -> None:
     for data in (b"", b"\0\1\0\0", b"\0\1\0\0" + b"\xff" * 60, b"\0\1\0\0" + bytes(11)):
         with pytest.raises(BrokenMessage):
             layout_of(kind, encoding, data)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("frame", ["b", "a_frame_whose_name_is_longer_than_two_numbers"])
+def test_what_some_messages_lack_is_no_number_there(frame: str) -> None:
+    """Of five messages of two joints every second has no positions; longer ones are read behind shorter ones."""
+    sent = [
+        cdr_joint_state(["hip", "knee"], [float(k), -float(k)])
+        if k % 2 == 0
+        else cdr_joint_state(["hip", "knee"], [], frame=frame)
+        for k in range(5)
+    ]
+    ends = np.cumsum([len(data) for data in sent]).tolist()
+    topic = Topic("/joint_states", JOINT_STATE, "cdr")
+    topic.add(np.frombuffer(b"".join(sent), np.uint8), [0, *ends[:-1]], ends, [10 * k for k in range(5)])
+    (series,) = topic.series.values()
+    order = np.argsort(series.clock(received=True))
+    position = np.concatenate(series.values["position"])[order]
+    np.testing.assert_array_equal(position[::2], [[0.0, -0.0], [2.0, -2.0], [4.0, -4.0]])
+    assert np.isnan(position[1::2]).all()

@@ -64,6 +64,14 @@ def test_thinned_lines_keep_their_shape_and_their_bound() -> None:
     assert len(same[0]) == len(x[::4777])
 
 
+def test_level_and_upright_lines_keep_the_points_of_each_square() -> None:
+    """Of four points in each square of half a pixel one is left, whichever way the line goes."""
+    goes, stays = 0.5 * np.repeat(np.arange(20.0), 4), np.full(80, 3.0)
+    for x, y in ((goes, stays), (stays, goes), (goes, goes)):
+        ((left, right),) = thinned([(x, y)], 100)
+        np.testing.assert_array_equal([left, right], [x[::4], y[::4]])
+
+
 def test_a_long_name_is_cut_and_has_its_room() -> None:
     assert slanted("step_12_no_fall_1_again", 0.0, 0.0).text == "step_12_no_fall_1…"
     assert (

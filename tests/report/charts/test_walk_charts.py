@@ -36,7 +36,10 @@ def test_stances_walks_and_all_together_stand_at_their_stiffness() -> None:
     assert [number_at(pitch, dot.y) for dot in fitted[:STANCES]] == pytest.approx(
         [STIFFNESS + 10 * k for k in range(STANCES)], abs=0.5
     )
-    assert fitted[4].radius > fitted[0].radius, "one that says more is larger"
+    says = [row.share for row in walk_result().stances if (row.foot, row.axis) == ("left", "pitch")][:STANCES]
+    assert says[4] > says[0]
+    areas = [dot.radius**2 for dot in fitted[:STANCES]]  # one that says more is larger by as much
+    assert [area / areas[0] for area in areas] == pytest.approx([share / says[0] for share in says])
     assert fitted[4].hover == "walk_1, 4.00 to 4.49 s: K = 540.0 N·m/rad"
     walks = dots(pitch, "walk fit") + dots(pitch, "walk validate")
     assert [number_at(pitch, dot.y) for dot in walks] == pytest.approx(3 * [STIFFNESS + 5], abs=0.5)
