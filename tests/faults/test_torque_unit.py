@@ -83,3 +83,11 @@ def test_part_of_a_motion_tells_no_unit(log: MotionLog) -> None:
     short = log.time < log.time[0] + 2.9
     part = MotionLog("part", log.time[short], {name: log.column(name)[short] for name in log.columns})
     assert found(part, 1000.0) == []
+
+
+@pytest.mark.parametrize(("moved", "told"), [(1e-12, 0), (1e-6, 1)])
+def test_moments_that_move_by_rounding_alone_tell_no_unit(log: MotionLog, moved: float, told: int) -> None:
+    """Of columns that never change, means of them do by their last digit."""
+    forces = moved * np.random.default_rng(0).standard_normal((51, 2, 3, 3))
+    moments = np.concatenate([forces, -4 * forces], axis=2)
+    assert len(list(torque_unit(hrp2.robot(), log, 0.01 + moments))) == told

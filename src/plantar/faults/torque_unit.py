@@ -17,6 +17,7 @@ TORQUE_UNIT = "torque_unit"
 # near zero, but for a part of a log by chance.
 FOLLOWS, IN_PARTS = 0.75, 0.4
 SHORTEST = 3.0  # s of a log: a shorter one is part of a motion
+ROUNDING = 1e-9  # m, rms: forces that move their moments about the centre of mass less do not move
 STILL = 0.03  # of the squares: a third of the log that moves less tells nothing
 ANOTHER_UNIT = 3.0  # times too large or too small: no gain is as wrong
 BETTER = 0.99  # share of what all torques leave: below it those of one foot alone are in another unit
@@ -49,7 +50,8 @@ def torque_unit(robot: RobotModel, log: MotionLog, moment_arms: Array) -> Iterat
     for place, sensor in enumerate(sensors):
         alone = _scale(moment_arms, (place,), f"columns 'wrench.{sensor}.torque.*'")
         found = alone if alone.left < BETTER * found.left else found
-    if found.correlation < FOLLOWS or 1 / ANOTHER_UNIT < found.scale < ANOTHER_UNIT:
+    stands = found.squares < len(moment_arms) * ROUNDING**2
+    if stands or found.correlation < FOLLOWS or 1 / ANOTHER_UNIT < found.scale < ANOTHER_UNIT:
         return
     parts = [_scale(part, found.feet, found.columns) for part in np.array_split(moment_arms, 3)]
     moved = [part for part in parts if part.squares > STILL * found.squares]
