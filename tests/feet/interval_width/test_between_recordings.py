@@ -243,3 +243,21 @@ def test_few_that_know_most_are_as_far_off_as_all_axes_show(
     apart = Apart(share, 4, (0.01, 0.06) if share else None)
     (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, apart, False)
     assert cause.share[0] / fit.values[0] == pytest.approx(told, rel=0.1, abs=0.003)
+
+
+@pytest.mark.parametrize(("wandering", "compared"), [(0.0012, False), (0.0, True)])
+def test_a_motion_for_each_axis_leaves_each_number_to_its_own(wandering: float, compared: bool) -> None:
+    """The other one moves a hundredth as much: beside an angle that wanders it could only show what rubber never does.
+    Without, it shows that the rubber is the same, and is believed."""
+    recordings = []
+    for seed, own in enumerate((1.0, 0.01)):
+        angle = own * swayed(3000, seed=seed)
+        noise = 0.0002 * np.random.default_rng(seed).standard_normal(3000)
+        read = angle + (seed and wandering) * swayed(3000, amplitude=1.0, seed=9)
+        recordings.append(made_recording(f"sway_{seed}", read, 400.0 * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    assert (axis_differences(fit, recordings, False) is not None) is compared
+    blocks = tangent_blocks(recordings, fit)
+    (cause,) = between_recordings(fit, blocks, recordings, Apart(0.0, 1), False)
+    assert cause.share[0] < 0.01 * fit.values[0]

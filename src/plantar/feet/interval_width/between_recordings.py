@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import UNIFORM, Array
+from plantar.conventions import SURE, UNIFORM, Array
 from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.errors_in_variables import slow_share
 from plantar.estimation.least_squares import values_without_each
@@ -142,16 +142,23 @@ def differences_of(
 
     Of few all are compared, however little they tell: nothing else says how far the one that tells most is off. In
     these a zero of the yaw torque passes for a stiffness of their own, so that such `zeros` are free beside them, and
-    an angle that wanders for a softer one: who tells less than the share is as unsure as that makes it.
+    an angle that wanders for a softer one: who tells less than the share is as unsure as that makes it. Where one tells
+    nearly all, and what the others could show is more than rubber does, and they do not, as of a motion for each axis,
+    the number is as from that one alone.
     """
-    least = TELLS * abs(float(fit.values[0])) if len(blocks) >= FEWEST_RECORDINGS else 0.0
-    tell = np.flatnonzero(np.abs(effects[:, 0]) > least).tolist()
+    tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * abs(float(fit.values[0]))).tolist()
+    alone = len(tell) < 2
+    if len(blocks) < FEWEST_RECORDINGS:
+        tell = list(range(len(blocks)))
     if len(tell) < 2:
         return None
     found, stiffness = fit_blocks(blocks), max(abs(float(fit.values[0])), 1e-300)
     differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
     told = effects[:, 0] / stiffness
     differences = beside_angle_errors(differences, blocks, found.residuals, stiffness, told, tell)
+    unsure = np.sqrt(np.diag(differences.covariance))
+    if alone and (unsure > np.maximum(MUCH, np.abs(differences.shares) / SURE)).all():
+        return None
     usual = float(found.std[0]) / stiffness
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 
