@@ -16,9 +16,8 @@ from plantar.robot.model import Imu, RobotModel
 from plantar.signals.segments import complete, spread_out
 
 SAMPLES = 50  # spread over the log: enough to tell
-AVERAGED = (
-    0.1  # s, of the wrenches about each sample: a structure that hums moves no mass, and balances nothing
-)
+# s, of the wrenches about each sample: a structure that hums moves no mass, and balances nothing
+AVERAGED = 0.1
 LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
 # Ratio of two tilts, and their correlation whatever the direction, to be compared.
 SIMILAR, COHERENT = 1.5, 0.9
