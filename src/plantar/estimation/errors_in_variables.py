@@ -138,8 +138,8 @@ def slow_attenuation(blocks: Sequence[Block], slope: float, *, shared_offset: bo
 
 def slow_share(block: Block, left: Array, slope: float) -> float:
     """By which share, at most 1, errors of the first column that change slowly may have drawn its value in one standing
-    block to zero: all that a `slope` common to several blocks leaves of its response, `left` (n,), may be theirs. None
-    where the block's own value is no smaller, or has the other sign.
+    block to zero: all that a `slope` common to several blocks leaves of its response, `left` (n,), may be theirs. 0
+    where the block's own value is no smaller, or so far past zero that errors do not do it.
     """
     change = float(fit_blocks([replace(block, response=left)]).values[0])
     if not -PAST_ZERO * slope < change < 0:
