@@ -31,7 +31,7 @@ def run(
         Path, typer.Option("--out", metavar="DIR", help="Folder for logs, result, figures and report.")
     ] = Path("out/demo"),
     preset: Annotated[str, typer.Option(metavar="PRESET", help=PRESET_HELP)] = "realistic",
-    seed: Annotated[int, typer.Option(help="Seed of noise, biases and zeros.", min=0)] = 0,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of noise, biases and zeros.", min=0)] = 0,
     quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,
     quiet: options.Quiet = False,

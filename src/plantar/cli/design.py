@@ -64,7 +64,9 @@ def run(
             "together, D (their volume) or A (their mean square).",
         ),
     ] = "widest",
-    seed: Annotated[int, typer.Option(help="Seed of the random frequencies and of the search.", min=0)] = 0,
+    seed: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the random frequencies and of the search.", min=0)
+    ] = 0,
     to: Annotated[
         list[str] | None,
         typer.Option(

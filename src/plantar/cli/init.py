@@ -19,7 +19,7 @@ LOGS_HELP = "Logs of the robot standing, to find sensors in and to check the fil
 
 def run(
     urdf: Annotated[Path, typer.Argument(help="The robot's URDF.", metavar="URDF")],
-    logs: Annotated[list[Path] | None, typer.Argument(help=LOGS_HELP, metavar="[LOG...]")] = None,
+    logs: Annotated[list[Path] | None, typer.Argument(help=LOGS_HELP, metavar="LOG...")] = None,
     out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")] = Path("robot.yaml"),
     columns: Annotated[Path | None, typer.Option("--columns", help=COLUMNS_HELP, metavar="FILE")] = None,
     force: Annotated[bool, typer.Option("--force", help="Write over an existing file.")] = False,

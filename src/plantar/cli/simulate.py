@@ -43,7 +43,9 @@ def run(
         typer.Option(metavar="DIR", help="Folder for the robot file, the logs and the truth beside them."),
     ],
     preset: Annotated[str | None, typer.Option(metavar="PRESET", help=PRESET_HELP)] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the sensors' noise, biases and zeros.", min=0)] = 0,
+    seed: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the sensors' noise, biases and zeros.", min=0)
+    ] = 0,
     robot: Annotated[
         Path | None,
         typer.Option(metavar="ROBOT.yaml", help="Robot file of a biped; the HRP-2-like one if left out."),

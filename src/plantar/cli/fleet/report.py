@@ -24,7 +24,7 @@ RATE_HELP = "False alarms to accept, per robot and year."
 
 def run(
     folder: Annotated[str, typer.Argument(help="The --out of `plantar fleet run`.", metavar="DIR")],
-    false_alarms: Annotated[float, typer.Option(help=RATE_HELP)] = FALSE_ALARMS,
+    false_alarms: Annotated[float, typer.Option(metavar="N", help=RATE_HELP)] = FALSE_ALARMS,
     json: Annotated[
         bool, typer.Option("--json", help="Print fleet.json instead of the page's path.")
     ] = False,
