@@ -37,7 +37,7 @@ def fleet_page(
         verdict=_verdict(summary, len(units), run or {}),
         alarms=summary.alarms[:SHOWN],
         more_alarms=max(0, len(summary.alarms) - SHOWN),
-        rate=number(summary.false_alarms, 3),
+        rate=f"{summary.false_alarms:.3g}",
         tables=[_robots(summary), _effects(summary), _trends(summary)],
         failures=_failures(summary),
         units=units,
@@ -46,9 +46,9 @@ def fleet_page(
 
 def _verdict(summary: FleetSummary, units: int, run: Mapping[str, Any]) -> list[str]:
     failed = sum(reason.count for reason in summary.failures)
-    sentences = [
-        f"{summary.groups} groups of {units} robots; {failed} failures; {len(summary.alarms)} alarms."
-    ]
+    counts = {"group": summary.groups, "robot": units, "failure": failed, "alarm": len(summary.alarms)}
+    groups, *rest = (f"{count} {what}{'' if count == 1 else 's'}" for what, count in counts.items())
+    sentences = [f"{groups} of {'; '.join(rest)}."]
     done, seconds = run.get("done"), run.get("seconds")
     if isinstance(done, int) and isinstance(seconds, float) and done and seconds > 0:
         reused = run.get("reused", 0)
