@@ -85,7 +85,10 @@ def run(
         ),
     ] = None,
     port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port of the --live page, which only this machine can open.")
+        int,
+        typer.Option(
+            metavar="N", min=0, max=65535, help="Port of the --live page, which only this machine can open."
+        ),
     ] = 8080,
     memory: options.Memory = None,
     json: options.Json = False,
@@ -151,7 +154,7 @@ def _so_far(replay: Replay) -> Table:
             for found in (one.stiffness, one.damping):
                 known = found.half_width < UNKNOWN * abs(found.value)
                 value, half = (found.value, found.half_width) if known else (None, None)
-                numbers += [number(value), f"± {_plain(half)}"]
+                numbers += [number(value), _plain(half)]
             rows.append((foot, axis, *numbers, said if axis == "pitch" else ""))
     return table(f"At {replay.time[-1]:.1f} s", heads, rows)
 
@@ -188,15 +191,7 @@ def _show(robot: RobotModel, replay: Replay, port: int) -> None:
 def _known(rows: Sequence[Parameter], title: str) -> Table:
     heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict")
     cells = [
-        (
-            row.foot,
-            row.axis,
-            row.name,
-            number(row.value),
-            f"± {_plain(row.half_width)}",
-            row.unit,
-            row.verdict,
-        )
+        (row.foot, row.axis, row.name, number(row.value), _plain(row.half_width), row.unit, row.verdict)
         for row in rows
     ]
     return table(title, heads, cells, [VERDICT_STYLE[row.verdict] for row in rows])
@@ -204,7 +199,7 @@ def _known(rows: Sequence[Parameter], title: str) -> Table:
 
 def _plain(half: float | None) -> str:
     """A half width to two digits, without a power of ten: it stands beside its value."""
-    return "–" if half is None else f"{float(f'{half:.2g}'):.15g}"
+    return "–" if half is None else f"± {float(f'{half:.2g}'):.15g}"
 
 
 def _print(replay: Replay, rows: Sequence[Parameter]) -> None:

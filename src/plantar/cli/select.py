@@ -24,7 +24,9 @@ def run(
         str,
         typer.Option(metavar="MOTION,...", help="Motions to compare with the best set, separated by commas."),
     ] = "",
-    largest: Annotated[int, typer.Option(help="Largest number of logs in a set.", min=1, max=20)] = 6,
+    largest: Annotated[
+        int, typer.Option(metavar="N", help="Largest number of logs in a set.", min=1, max=20)
+    ] = 6,
     memory: options.Memory = None,
     json: options.Json = False,
     quiet: options.Quiet = False,
@@ -59,7 +61,7 @@ def _table(title: str, choices: Any) -> object:
          number(choice.usual, 3), number(choice.condition_number, 3))
         for choice in choices
     ]  # fmt: skip
-    return table(title, ("logs", *heads, "usual", "condition"), rows)
+    return table(title, ("logs", *heads, "mean", "condition"), rows)
 
 
 def _percent(value: float) -> str:
