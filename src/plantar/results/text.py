@@ -41,4 +41,7 @@ def html_table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]
 
 def html_lines(lines: Iterable[str]) -> str:
     """Lines of text under a table."""
-    return "".join(f'<div style="padding:1px 10px">{escape(line.strip())}</div>' for line in lines)
+    return "".join(
+        f'<div style="padding:1px 10px 1px {10 + 10 * (len(line) - len(line.lstrip()))}px">{escape(line.strip())}</div>'
+        for line in lines
+    )
