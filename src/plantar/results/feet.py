@@ -118,9 +118,8 @@ class FeetResult:
         """The same for a notebook."""
         table = text.html_table(self._title(), feet_text.HEADS, feet_text.parameter_cells(self.parameters))
         delay = feet_text.delay_line(self.sensor_delay)
-        return table + text.html_lines(
-            [*feet_text.weak_lines(self.parameters), *delay, *text.warnings(self.notes)]
-        )
+        lines = [*feet_text.weak_lines(self.parameters), *delay, *text.warnings(self.notes)]
+        return table + text.html_lines(lines)
 
     def _title(self) -> str:
         counts = [sum(row.role == role for row in self.inputs) for role in ("fit", "validate")]

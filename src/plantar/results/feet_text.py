@@ -155,18 +155,14 @@ def assumption_cells(rows: Sequence[Assumption]) -> list[tuple[str, ...]]:
         assumed = f"{number(factor * row.assumed, 2)} {shown}".strip()
         if row.found is not None:
             value = factor * row.found
-            text = (
-                number(value, 2) if row.std is None else with_uncertainty(value, factor * NORMAL95 * row.std)
-            )
+            half = None if row.std is None else factor * NORMAL95 * row.std
+            text = number(value, 2) if half is None else with_uncertainty(value, half)
             found = f"{text} {shown}".strip()
-        widths = [
-            f"± {percent(width)}" if width else MISSING
-            for width in (row.stiffness_percent, row.damping_percent)
-        ]
+        both = row.stiffness_percent, row.damping_percent
+        widths = [f"± {percent(width)}" if width else MISSING for width in both]
+        new = row.name != last
         cells.append(
-            (row.name, assumed, row.what, found, *widths)
-            if row.name != last
-            else ("", "", row.what, found, "", "")
+            (row.name, assumed, row.what, found, *widths) if new else ("", "", row.what, found, "", "")
         )
         last = row.name
     return cells
