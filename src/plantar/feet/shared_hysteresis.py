@@ -28,6 +28,9 @@ from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 # well, and one that was found there may be taken for none again.
 ALIKE = 2.0
 FEWEST_HINTS = 3  # axes that may speak for a memory together: of two, both do so by chance in some walks
+WORTH_A_HINT = (
+    0.05  # of the stiffness, that a memory takes off it on average: less is no more than other errors do
+)
 HINTED = (
     "hysteresis predicts held-out steps better about every axis, by {:.0f} % together, about none by enough to be "
     "taken for certain; with hysteresis the stiffness is smaller (record longer steps, or stand and sway)"
@@ -103,20 +106,23 @@ def _without_needless_caution(fit: AxisFit, choice: ModelChoice, foot: FittedFoo
 
 def _hinted(feet: Mapping[str, FittedFoot]) -> str | None:
     """A caution where every axis of the feet that step is predicted better by a memory, each by too little to be
-    believed there and all together by enough: one rubber's memory, and not four accidents."""
-    fits = [fit for one in feet.values() if _steps(one) for fit in one.fits.values() if fit.choice]
-    rivals = [rival(fit) for fit in fits]
-    if len(fits) < FEWEST_HINTS or any(found is None or found.refused is not None for found in rivals):
+    believed there and all together by enough: one rubber's memory, and not four accidents.
+
+    Not where stiffness stays what it is, nor where a spring explains all of an axis, about which no model was tried.
+    """
+    fits = [fit for one in feet.values() if _steps(one) for fit in one.fits.values()]
+    missed, softer = list[tuple[float, float]](), list[float]()
+    for fit in fits:
+        found = rival(fit)
+        if fit.choice is None or found is None or found.refused is not None:
+            return None
+        spring = next(score for score in fit.choice.ranking if isinstance(score.model, KelvinVoigt))
+        missed.append((found.held_out_rms, spring.held_out_rms))
+        softer.append(1 - float(found.fit.values[0] / spring.fit.values[0]))
+    if len(fits) < FEWEST_HINTS or np.mean(softer) < WORTH_A_HINT:
         return None
-    missed = np.array([
-        (found.held_out_rms, score.held_out_rms)
-        for fit, found in zip(fits, rivals, strict=True)
-        if fit.choice and found
-        for score in fit.choice.ranking
-        if isinstance(score.model, KelvinVoigt)
-    ])  # fmt: skip
-    less = 1 - np.linalg.norm(missed[:, 0]) / np.linalg.norm(missed[:, 1])
-    return HINTED.format(100 * less) if less > LEAST_GAIN else None
+    beside, alone = np.linalg.norm(missed, axis=0)
+    return HINTED.format(100 * (1 - beside / alone)) if beside < (1 - LEAST_GAIN) * alone else None
 
 
 def _known(fit: AxisFit) -> bool:
