@@ -238,3 +238,16 @@ def test_where_the_other_axis_bends_the_rubber_and_shows_no_memory_small_motions
     found = with_shared_hysteresis({"one": one})["one"].fits[axis]
     assert found.choice is not None
     assert (found.choice.caution is None) == dropped
+
+
+@pytest.mark.parametrize(("wander", "taken"), [(0.0, True), (2e-4, False)])
+def test_an_axis_about_which_a_foot_hardly_turns_shows_no_memory_to_others(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, wander: float, taken: bool
+) -> None:
+    """Its angle is mostly an attitude that wanders, which no torque follows: that is no hysteresis of the rubber."""
+    angle = 0.01 * swayed(4000, seed=1)
+    read = angle + (swayed(4000, amplitude=wander, seed=9) if wander else 0.0)
+    faint = [made_recording("sway", read, RUBBER.torque(angle, np.gradient(angle, PERIOD)))]
+    feet = {"one": foot(spring, recordings), "other": foot(clear, faint)}
+    found = with_shared_hysteresis(feet)["one"].fits["pitch"]
+    assert (found.model.name == "elastoplastic") == taken

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import SURE, UNIFORM, Array
 from plantar.estimation import Block, fit_blocks, influences_of
-from plantar.estimation.errors_in_variables import slow_attenuation, slow_share
+from plantar.estimation.errors_in_variables import mostly_error, slow_share
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
@@ -24,8 +24,6 @@ NAME = "between recordings"
 MOST = 0.5  # of what tells a number: a recording that has more tells more than all others together
 # Of the stiffness: in a recording that makes less of it, all else that is wrong is divided by a small motion.
 TELLS = 0.05
-# Of the stiffness: an axis from which errors of its angles may have taken more is not known, nor is what differs in it.
-DRAWN = 0.2
 # Share, surely: rubber that warms up does less. It is a warning then.
 MUCH = 0.03
 
@@ -157,7 +155,7 @@ def differences_of(
         return None
     found, stiffness = fit_blocks(blocks), max(abs(float(fit.values[0])), 1e-300)
     differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
-    if float(slow_attenuation(blocks, stiffness)[0]) > DRAWN * stiffness:
+    if mostly_error(blocks, stiffness):
         return None
     little = np.abs(effects[:, 0]) < TELLS * stiffness
     left = {
