@@ -26,8 +26,7 @@ from plantar.whole_body.settings import DynamicsSettings
 from plantar.whole_body.whole_logs import Progress, WholeLogs, prepare_logs
 
 FRICTION = ("viscous", "coulomb", "offset")  # of a joint that the robot file does not describe
-# Cables are springs, a geared motor's rotor is an inertia: taken where held-out data speak for them. A rotor left out
-# passes for a spring that pushes.
+# Cables and rotors, where held-out data speak for them. A rotor left out passes for a spring that pushes.
 FURTHER = ((), ("stiffness",), ("inertia",), ("stiffness", "inertia"))
 POSITIVE = ("viscous", "coulomb", "stiffness", "inertia")
 USABLE_SHARE = 0.2  # half width of the interval over the value
