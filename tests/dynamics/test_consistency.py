@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import clarabel
 import numpy as np
 import pinocchio as pin
 import pytest
-from scipy import optimize
+from scipy import optimize, sparse
 
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
 
@@ -56,3 +57,22 @@ def test_the_fit_is_the_nearest_body(seed: int) -> None:
     distance = [np.linalg.norm(weights * (one - target)) for one in (found, expected)]
     assert distance[0] == pytest.approx(distance[1], rel=5e-3)
     np.testing.assert_allclose(weights * found, weights * expected, atol=0.05)
+
+
+def test_the_solver_is_given_directions_of_one_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Logs without noise decide some directions a million times as well as others: unscaled, it gets no further."""
+    given = []
+    solver = clarabel.DefaultSolver
+
+    def kept(square: sparse.csc_matrix, *rest: object) -> object:
+        given.append(square.diagonal())
+        return solver(square, *rest)
+
+    cad = pin.Inertia.FromEllipsoid(2.0, 0.3, 0.2, 0.25).toDynamicParameters()
+    prior = Prior.around(cad)
+    regressor = np.diag(np.geomspace(1e-2, 1e4, 10)) @ np.linalg.inv(prior.spread)
+    target = regressor @ np.array([-1.0, *cad[1:]])
+    monkeypatch.setattr(clarabel, "DefaultSolver", kept)
+    found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-9)
+    np.testing.assert_allclose(given, [np.ones(10)], rtol=1e-9)
+    assert np.linalg.eigvalsh(pseudo_inertia(found))[0] > -1e-7

@@ -71,6 +71,17 @@ def test_moments_that_hardly_go_together_tell_no_unit(log: MotionLog) -> None:
     assert list(torque_unit(hrp2.robot(), log, moments)) == []
 
 
+def test_beside_one_foots_reversed_torques_the_others_are_in_no_unit(log: MotionLog) -> None:
+    """Both feet share a sway alike: with the left's turned round the right's look 3.2 times too small."""
+    left, own = np.random.default_rng(0).normal(0, 0.01, (2, 51, 3, 3))
+    right = 0.9 * left + 0.2 * own
+    forces = np.stack([-left, -right], axis=1)
+    moments = np.concatenate([forces, np.stack([-left, right], axis=1)], axis=2)
+    assert list(torque_unit(hrp2.robot(), log, moments)) == []
+    small = np.concatenate([forces, np.stack([left, right / 3.2], axis=1)], axis=2)
+    assert len(list(torque_unit(hrp2.robot(), log, small))) == 1
+
+
 def test_moments_that_go_together_in_part_of_a_log_tell_no_unit(log: MotionLog) -> None:
     forces, others = np.random.default_rng(0).normal(0, 0.01, (2, 51, 2, 3, 3))
     forces[:40] *= 0.2

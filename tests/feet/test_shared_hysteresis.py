@@ -326,3 +326,16 @@ def test_an_axis_that_a_spring_explains_denies_a_hint(recordings: list[Recording
         choice = with_shared_hysteresis(given)["one"].fits["pitch"].choice
         assert choice is not None
         assert (choice.caution is not None) is hinted
+
+
+@pytest.mark.parametrize(("wander", "taken"), [(0.0, True), (2e-4, False)])
+def test_an_axis_about_which_a_foot_hardly_turns_shows_no_memory_to_others(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, wander: float, taken: bool
+) -> None:
+    """Its angle is mostly an attitude that wanders, which no torque follows: that is no hysteresis of the rubber."""
+    angle = 0.01 * swayed(4000, seed=1)
+    read = angle + (swayed(4000, amplitude=wander, seed=9) if wander else 0.0)
+    faint = [made_recording("sway", read, RUBBER.torque(angle, np.gradient(angle, PERIOD)))]
+    feet = {"one": foot(spring, recordings), "other": foot(clear, faint)}
+    found = with_shared_hysteresis(feet)["one"].fits["pitch"]
+    assert (found.model.name == "elastoplastic") == taken

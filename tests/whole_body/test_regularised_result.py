@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -82,11 +83,15 @@ def test_a_link_of_the_urdf_that_no_body_can_be_is_named(robot: RobotModel) -> N
     assert codes["cad_inconsistent"].endswith(f": {fit_of(robot).equation.links[1]}")
 
 
-def test_base_rows_have_students_intervals(robot: RobotModel) -> None:
+@pytest.mark.parametrize("gain", [0.0, 0.05])
+def test_base_rows_have_students_intervals_that_hold_the_sensors_gain(robot: RobotModel, gain: float) -> None:
+    """Ten kilograms by sensors that read 5 % too much are not known to a gram."""
     fit = fit_of(robot)
-    std = np.linspace(0.1, 1.0, len(fit.base))
-    rows = base_rows(fit, Uncertainty(std, {}, 5.0))
+    noise = np.linspace(0.1, 1.0, len(fit.base))
+    told = replace(robot, uncertainty=replace(robot.uncertainty, wrench_gain=gain))
+    rows = base_rows(told, fit, Uncertainty(noise, {}, 5.0))
     values = fit.base.grouping @ fit.inertial
+    std = np.sqrt(noise**2 + (gain * values) ** 2)
     half = stats.t.ppf(0.975, 5.0) * std
     for row, value, deviation, width in zip(rows, values, std, half, strict=True):
         assert (row.value, row.std) == pytest.approx((value, deviation))

@@ -9,7 +9,7 @@ import pytest
 
 from plantar.results.dynamics import DynamicsScore
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.scores import Place, scored
+from plantar.whole_body.scores import Place, scored, worse_notes
 
 PREDICTED = np.array([[1.0, 2.0, 3.0, 4.0], [10.0, 10.0, 10.0, 10.0]])
 CAD = np.zeros((2, 4))
@@ -91,3 +91,15 @@ def test_residuals_hold_every_sample_of_every_motion() -> None:
     assert columns["role"] == ["fit"] * 4 + ["validate"] * 4
     assert columns["force.x.measured"] == [1.0, 2.0, 3.0, 8.0, -4.0, 2.0, 3.0, 4.0]
     assert columns["force.x.predicted"] == [1.0, 2.0, 3.0, 4.0] * 2
+
+
+def test_unseen_motions_that_the_urdf_predicts_better_are_told() -> None:
+    """The URDF predicts nothing at all, the fit 1 to 4: of a motion that is next to nothing the URDF knows more."""
+    places = (Place(0, "N", axis="force.x"), Place(1, "N.m", axis="torque.y"))
+    still = samples("still", [1.0, -1.0, 1.0, -1.0], [9.0, 9.0, 9.0, 9.0])
+    for fitted, unseen, told in (([SEEN], [still], 1), ([still], [SEEN], 0), ([SEEN], [UNSEEN], 0)):
+        found, _ = scored(FIT, fitted, unseen, places)  # type: ignore[arg-type]
+        notes = worse_notes(found)
+        assert [note.code for note in notes] == told * ["worse_than_urdf"]
+        assert all("still: force.x: 3.08 against 1 N rms" in note.text for note in notes)
+        assert all("torque.y" not in note.text for note in notes)

@@ -122,6 +122,8 @@ def _constrained(square: Array, linear: Array, prior: Prior, places: Sequence[in
         import clarabel
     size, count = len(prior.cad), len(linear)
     unit = max(float(np.abs(linear).max(initial=0.0)), 1e-12)
+    # Logs without noise decide some directions 1e12 times as well as others.
+    sizes = 1 / np.sqrt(np.maximum(np.diag(square) / unit, 1e-12))
     blocks, offsets = [], []
     for link, width in enumerate(prior.widths):
         blocks.append(-_PACKED @ width)
@@ -135,16 +137,16 @@ def _constrained(square: Array, linear: Array, prior: Prior, places: Sequence[in
     settings.verbose = False
     settings.max_threads = 1
     solution = clarabel.DefaultSolver(
-        sparse.csc_matrix(np.triu(square) / unit),
-        -linear / unit,
-        sparse.csc_matrix(sparse.vstack([bodies, signs])),
+        sparse.csc_matrix(np.triu(square) / unit * np.outer(sizes, sizes)),
+        -linear / unit * sizes,
+        sparse.csc_matrix(sparse.vstack([bodies, signs]) @ sparse.diags(sizes)),
         np.concatenate([*offsets, np.zeros(len(places))]),
         [clarabel.PSDTriangleConeT(4)] * len(blocks) + [clarabel.NonnegativeConeT(len(places))],
         settings,
     ).solve()
     if str(solution.status) not in ("Solved", "AlmostSolved"):
         raise DataError(f"the physically consistent fit did not converge ({solution.status})")
-    return np.array(solution.x)
+    return np.asarray(sizes * np.array(solution.x))
 
 
 def is_consistent(parameters: Array) -> bool:

@@ -27,6 +27,7 @@ NORMAL = 1.4826  # standard deviation over median absolute value, of normal nois
 FEWEST = 50  # samples
 SECOND = 1.0  # s, within which an attitude that wanders is nearly a parabola in time
 PAST_ZERO = 1.5  # of a value: errors draw it to zero, and chance not far past it
+DRAWN = 0.2  # of a value: one from which errors may have taken more is not known
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
@@ -134,6 +135,12 @@ def slow_attenuation(blocks: Sequence[Block], slope: float, *, shared_offset: bo
         for block, own in zip(blocks, left, strict=True)
     )
     return np.asarray(inverse[:size, 0] * (along / slope if along > 0 else 0.0))
+
+
+def mostly_error(blocks: Sequence[Block], value: float) -> bool:
+    """Whether slow errors of the first column may have taken more of its `value` than the share DRAWN: then the blocks
+    tell nothing that holds elsewhere."""
+    return bool(slow_attenuation(blocks, value)[0] > DRAWN * abs(value))
 
 
 def slow_share(block: Block, left: Array, slope: float) -> float:

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES
+from plantar.estimation.errors_in_variables import mostly_error
 from plantar.feet.assess.verdicts import WEAK_WIDTH
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
@@ -20,6 +21,7 @@ from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, SMALL, has_memory, only
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
@@ -43,7 +45,7 @@ def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFo
     An axis that neither shows nor excludes it keeps what it has, with a caution, and so does one whose steps are too
     small for its memory.
     """
-    every = [fit for one in feet.values() for fit in one.fits.values() if _known(fit)]
+    every = [fit for one in feet.values() for fit in one.fits.values() if _known(fit, one)]
     shown = {fit.model.name for fit in every if has_memory(fit.model)}
     share = max((slope_share(fit) for fit in every), default=0.0)
     slips = min((_slip_angle(fit) for fit in every), default=np.inf)
@@ -125,10 +127,14 @@ def _hinted(feet: Mapping[str, FittedFoot]) -> str | None:
     return HINTED.format(100 * (1 - beside / alone)) if beside < (1 - LEAST_GAIN) * alone else None
 
 
-def _known(fit: AxisFit) -> bool:
+def _known(fit: AxisFit, foot: FittedFoot) -> bool:
     """Whether the spring beside a memory is known at all: else that axis tells neither from the other, and nothing to
-    others."""
-    return not has_memory(fit.model) or NORMAL95 * float(fit.std[0]) < WEAK_WIDTH * abs(float(fit.values[0]))
+    others. Of a standing foot that hardly turns about an axis the angle's own errors are its memory."""
+    if not has_memory(fit.model):
+        return True
+    if NORMAL95 * float(fit.std[0]) >= WEAK_WIDTH * abs(float(fit.values[0])):
+        return False
+    return _steps(foot) or not mostly_error(tangent_blocks(foot.thin.fitted, fit), float(fit.equivalent[0]))
 
 
 def _steps(foot: FittedFoot) -> bool:

@@ -124,7 +124,7 @@ def inertia_over(
         },
         rank=rank,
         condition_number=condition,
-        base_parameters=base_rows(fit, trust),
+        base_parameters=base_rows(model, fit, trust),
         inertial_parameters=inertial_rows(fit),
         parameters=(),
         validation=(),

@@ -15,22 +15,24 @@ from plantar.logs.inputs import LogInputs, RobotInput, robot_of
 from plantar.notes import Note
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, JointParameter
 from plantar.results.feet import Verdict
+from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import Uncertainty, uncertainty
 from plantar.whole_body.equations import TERM_UNITS, inertial_samples, joint_samples
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.regularised_fit import RegularisedFit, RegularisedProblem, errors_of
+from plantar.whole_body.regularised_fit import RegularisedFit, RegularisedProblem, as_good
 from plantar.whole_body.regularised_result import fit_notes, result_of
 from plantar.whole_body.scores import Place
 from plantar.whole_body.settings import DynamicsSettings
 from plantar.whole_body.whole_logs import Progress, WholeLogs, prepare_logs
 
 FRICTION = ("viscous", "coulomb", "offset")  # of a joint that the robot file does not describe
-SPRUNG = (*FRICTION, "stiffness")  # cables and covers: taken where held-out data speak for it
+# Cables and rotors, where held-out data speak for them. A rotor left out passes for a spring that pushes.
+FURTHER = ((), ("stiffness",), ("inertia",), ("stiffness", "inertia"))
 POSITIVE = ("viscous", "coulomb", "stiffness", "inertia")
 USABLE_SHARE = 0.2  # half width of the interval over the value
 # Of the joint's rms torque: an offset known to within it is usable even where it is near zero.
 OFFSET_SHARE = 0.05
-
+SENSORS_ZERO = "zeros of the force sensor below the joint count as its offset"
 # Those of given inertias.
 UNCOUNTED = "the standard deviations of the joints' terms do not include their errors"
 
@@ -49,7 +51,7 @@ def identify_joints(
     """Friction, springs, offsets and actuator inertia of the joints from their torques (eq. 3).
 
     Terms are those of the robot file; a joint that it does not describe has viscous and Coulomb friction and an offset,
-    and a spring where held-out parts of `logs` are predicted better with it. Passive joints need no effort.
+    a spring and a rotor's inertia where held-out parts of `logs` ask for them. Passive joints need no effort.
 
     Args:
         robot: a robot, or the path of its robot file.
@@ -102,7 +104,7 @@ def identify_joints(
         for joint, name in enumerate(tree.names)
         if name in terms
     ]
-    parameters = _parameters(fit, trust, terms, fitted)
+    parameters = _parameters(fit, trust, terms, fitted, _above_sensors(robot))
     notes = [*said, *choice]
     return result_of(
         JOINTS_SCHEMA, made, fit, trust, fitted, unseen, places, chosen, parameters=parameters, notes=notes
@@ -130,30 +132,28 @@ def _chosen(
     body = made.body
     measured = _measured_joints(made)
     described = body.robot.joints
-    fits = []
-    for default in (FRICTION, SPRUNG):
+    tried, errors = [], []
+    for further in FURTHER:
+        default = (*FRICTION, *further)
         terms = {name: described[name].terms if name in described else default for name in measured}
         recordings = [joint_samples(body, whole, made.calibration, terms) for whole in made.fitted]
         problem = RegularisedProblem.of(body.equation, body.base, body.prior, recordings)
-        fits.append((terms, problem.solve(progress) if inertial is None else problem.with_known(inertial)))
-        if all(name in described for name in measured):
-            return terms, fits[0][1], []
-    errors = [_held_out(fit, fits[0][1]) for _, fit in fits]
-    sprung = errors[1] < errors[0]
-    terms, fit = fits[sprung]
-    text = (
-        f"joints that the robot file does not describe: {', '.join(SPRUNG if sprung else FRICTION)} (held-out error "
-        f"{np.sqrt(errors[0]):.4g} without stiffness, {np.sqrt(errors[1]):.4g} with it)"
-    )
+        fit = problem.solve(progress) if inertial is None else problem.with_known(inertial)
+        if not fit.held_out or all(name in described for name in measured):
+            return terms, fit, []
+        tried.append((default, terms, fit))
+        errors.append(_held_out(fit, tried[0][2]))
+    default, terms, fit = tried[as_good(errors).index(True)]
+    beside = [f"{np.sqrt(np.mean(error)):.4g} with {' and '.join(further) or 'no more'}"
+              for error, further in zip(errors, FURTHER, strict=True)]  # fmt: skip
+    text = f"joints that the robot file does not describe: {', '.join(default)} (held-out error {', '.join(beside)})"
     return terms, fit, [Note("terms", "info", text)]
 
 
-def _held_out(fit: RegularisedFit, reference: RegularisedFit) -> float:
-    """Smallest held-out error of a fit in the weights of another, so that both can be compared."""
-    if not fit.held_out:
-        return float("inf")
+def _held_out(fit: RegularisedFit, reference: RegularisedFit) -> Array:
+    """Each fold's held-out error of a fit, where it is smallest, in the weights of another: so both compare."""
     ratio = np.mean([(reference.weights[row] / fit.weights[row]) ** 2 for row in fit.weights])
-    return float(errors_of(fit.held_out).min() * ratio)
+    return np.asarray(min((tried.errors for tried in fit.held_out), key=np.mean) * ratio)
 
 
 def _measured_joints(made: WholeLogs) -> tuple[str, ...]:
@@ -180,7 +180,9 @@ def _parameters(
     trust: Uncertainty,
     terms: Mapping[str, tuple[str, ...]],
     recordings: Sequence[Samples],
+    above: frozenset[str],
 ) -> tuple[JointParameter, ...]:
+    """Every term of every joint; above: joints whose rows hold a foot's force sensor."""
     rows = []
     for joint, name in enumerate(fit.equation.tree.names):
         if name not in terms:
@@ -195,12 +197,23 @@ def _parameters(
         verdicts = _judge_all(terms[name], fit.extras[row], intervals, torque, still)
         found = zip(terms[name], fit.extras[row], trust.extras[row], intervals, verdicts, strict=True)
         for term, value, std, interval, (verdict, reason) in found:
+            if term == "offset" and verdict == "usable" and name in above:
+                verdict, reason = "weak", SENSORS_ZERO
             rows.append(
                 JointParameter(
                     name, term, TERM_UNITS[term][slides], float(value), float(std), interval, verdict, reason
                 )
             )
     return tuple(rows)
+
+
+def _above_sensors(robot: RobotModel) -> frozenset[str]:
+    """The joints between the root link of a floating robot and its feet's force sensors."""
+    if robot.base == "fixed":
+        return frozenset()
+    model = robot.model
+    sensors = [robot.frame(foot.wrench.placement)[0] for foot in robot.feet.values()]
+    return frozenset(model.names[joint] for sensor in sensors for joint in model.supports[sensor])
 
 
 def _judge_all(

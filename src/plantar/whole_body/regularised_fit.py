@@ -157,15 +157,15 @@ def errors_of(held_out: Sequence[HeldOutError]) -> Array:
 
 
 def chosen_regularisation(held_out: Sequence[HeldOutError]) -> float:
-    """The largest regularisation weight whose held-out error is within one standard error of the smallest."""
+    """The largest regularisation weight whose held-out error is as good as the smallest."""
     if not held_out:
         return FIRST_REGULARISATION
-    best = min(held_out, key=lambda tried: float(tried.errors.mean()))
-    tolerated = [best.regularisation]
-    for tried in held_out:
-        excess = tried.errors - best.errors
-        if tried.regularisation > best.regularisation and excess.mean() <= excess.std(ddof=1) / np.sqrt(
-            len(excess)
-        ):
-            tolerated.append(tried.regularisation)
-    return max(tolerated)
+    good = as_good([tried.errors for tried in held_out])
+    return max(tried.regularisation for tried, one in zip(held_out, good, strict=True) if one)
+
+
+def as_good(errors: Sequence[Array]) -> list[bool]:
+    """Whether each of these held-out errors of folds is within one standard error of the smallest (of the paired
+    differences)."""
+    excess = [error - min(errors, key=np.mean) for error in errors]
+    return [bool(more.mean() <= more.std(ddof=1) / np.sqrt(len(more))) for more in excess]

@@ -21,7 +21,7 @@ from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import Uncertainty
 from plantar.whole_body.folds import Samples
 from plantar.whole_body.regularised_fit import RegularisedFit
-from plantar.whole_body.scores import Place, scored
+from plantar.whole_body.scores import Place, scored, worse_notes
 from plantar.whole_body.whole_logs import WholeLogs
 
 NAMED = 12  # unexcited parameters named in a note; more are counted
@@ -52,11 +52,11 @@ def result_of(
         settings={**settings, "strength": fit.regularisation},
         rank=rank,
         condition_number=condition,
-        base_parameters=base_rows(fit, trust),
+        base_parameters=base_rows(robot, fit, trust),
         inertial_parameters=inertial_rows(fit),
         parameters=parameters,
         validation=validation,
-        notes=unique([*logs.notes, *notes, *excitation, *fit_notes(fit), *moved]),
+        notes=unique([*logs.notes, *notes, *worse_notes(validation), *excitation, *fit_notes(fit), *moved]),
         urdf=urdf,
         residuals=residuals,
     )
@@ -112,8 +112,10 @@ def fit_notes(fit: RegularisedFit) -> list[Note]:
     return notes
 
 
-def base_rows(fit: RegularisedFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
+def base_rows(robot: RobotModel, fit: RegularisedFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
+    """Base parameters; those of a floating robot follow its force sensors' gain, as unsure as that is."""
     values = fit.base.grouping @ fit.inertial
+    deviations = np.hypot(trust.base, robot.uncertainty.wrench_gain * values * fit.equation.floating)
     return tuple(
         BaseParameter(
             expression,
@@ -122,7 +124,7 @@ def base_rows(fit: RegularisedFit, trust: Uncertainty) -> tuple[BaseParameter, .
             interval95(float(value), float(std), trust.freedom),
             relative_std_percent(float(value), float(std)),
         )
-        for expression, value, std in zip(fit.base.expressions, values, trust.base, strict=True)
+        for expression, value, std in zip(fit.base.expressions, values, deviations, strict=True)
     )
 
 

@@ -10,12 +10,15 @@ import numpy as np
 import pyarrow as pa
 
 from plantar.conventions import Array
+from plantar.notes import Note, listing
 from plantar.results.dynamics import DynamicsScore
 from plantar.results.scores import error_measures
 from plantar.whole_body.folds import Samples
 from plantar.whole_body.regularised_fit import RegularisedFit
 
 Kind = Literal["direct", "cross"]
+NAMED = 6  # rows named in a note; more are counted
+WORSE = 1.5  # times the URDF's error: by less unseen motions differ by chance
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,15 @@ def scored(
             rows.append(_score(kind, samples.name, places[0].unit, *parts, joint="all"))
         tables.append(_residuals(samples, kind, places, measured, predicted))
     return tuple(rows), pa.concat_tables(tables)
+
+
+def worse_notes(scores: Sequence[DynamicsScore]) -> list[Note]:
+    """A warning of unseen motions that the URDF alone predicts better: what was fitted there was no inertia."""
+    worse = [one for one in scores if one.kind == "cross" and one.rms_error > WORSE * one.cad_rms_error]
+    said = [f"{one.motion}: {one.axis or one.joint}: {one.rms_error:.3g} against {one.cad_rms_error:.3g} {one.unit} rms"
+            for one in worse]  # fmt: skip
+    text = "the URDF alone predicts unseen motions better: use its inertias, or record larger and quicker motions"
+    return [Note("worse_than_urdf", "warning", f"{text} ({listing(said, NAMED)})")] if said else []
 
 
 def _score(

@@ -87,6 +87,17 @@ def test_an_angle_that_wanders_beside_a_small_motion_is_no_other_sign() -> None:
     assert len(said(swaying((PLAIN, 1.0), (PLAIN, 1.0), (reversed_, 0.16)))) == 1
 
 
+def test_of_a_foot_that_hardly_turns_none_is_odd() -> None:
+    """A third of the angle is the attitude's in two recordings, nearly all in one, which still tells a seventh."""
+    recordings = swaying((PLAIN, 0.1), (PLAIN, 0.1), (PLAIN, 0.05))
+    read = []
+    for seed, (recording, wander) in enumerate(zip(recordings, (0.0005, 0.0005, 0.002), strict=True)):
+        state = recording.bushes[FOOT]
+        angle = state.deflection[:, 0] + swayed(COUNT, amplitude=wander, seed=9 + seed)
+        read.append(made_recording(f"sway_{seed}", angle, state.torque[:, 0]))
+    assert said(read) == []
+
+
 def test_a_memory_makes_small_motions_stiffer() -> None:
     recordings = swaying((SLIPPING, 1.0), (SLIPPING, 0.3), (SLIPPING, 1.0))
     assert len(said(recordings, "kelvin_voigt")) == 1

@@ -261,3 +261,17 @@ def test_a_motion_for_each_axis_leaves_each_number_to_its_own(wandering: float, 
     blocks = tangent_blocks(recordings, fit)
     (cause,) = between_recordings(fit, blocks, recordings, Apart(0.0, 1), False)
     assert cause.share[0] < 0.01 * fit.values[0]
+
+
+@pytest.mark.parametrize(("size", "told"), [(0.02, False), (0.5, True)])
+def test_an_axis_about_which_a_foot_hardly_turns_says_nothing_of_recordings(size: float, told: bool) -> None:
+    """Three motions that hardly turn a stiff foot: its angles wander by as much, in each by another share."""
+    recordings = []
+    for seed, wander in enumerate((0.0003, 0.001, 0.0005)):
+        angle = size * swayed(3000, seed=seed)
+        noise = 0.02 * np.random.default_rng(seed).standard_normal(3000)
+        read = angle + swayed(3000, amplitude=wander, seed=9 + seed)
+        recordings.append(made_recording(f"sway_{seed}", read, 4000.0 * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    assert (axis_differences(fit, recordings, False) is not None) == told

@@ -47,8 +47,7 @@ def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> lis
     if len(tell) < 2 or not fit.values[0] > 0:
         return []
     differences, stiffness = among(beside_one(blocks, torques, tell[0]), tell), float(fit.values[0])
-    shares = np.array(told) / stiffness
-    differences = beside_angle_errors(differences, blocks, fit.residuals, stiffness, shares, tell)
+    differences = beside_angle_errors(differences, blocks, fit.residuals, stiffness, tell)
     odd = furthest(differences, MUCH, SURE)
     if odd is not None and not isinstance(wide.model, KelvinVoigt):
         place = tell[odd.place]

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import SURE, UNIFORM, Array
 from plantar.estimation import Block, fit_blocks, influences_of
-from plantar.estimation.errors_in_variables import slow_share
+from plantar.estimation.errors_in_variables import mostly_error, slow_share
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
@@ -142,9 +142,10 @@ def differences_of(
 
     Of few all are compared, however little they tell: nothing else says how far the one that tells most is off. In
     these a zero of the yaw torque passes for a stiffness of their own, so that such `zeros` are free beside them, and
-    an angle that wanders for a softer one: who tells less than the share is as unsure as that makes it. Where one tells
-    nearly all, and what the others could show is more than rubber does, and they do not, as of a motion for each axis,
-    the number is as from that one alone.
+    an angle that wanders for a softer one: who tells less than the share is as unsure as that makes it, and of a foot
+    that hardly turns about an axis so are all, which then says nothing. Where one tells nearly all, and what the others
+    could show is more than rubber does, and they do not, as of a motion for each axis, the number is as from that one
+    alone.
     """
     tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * abs(float(fit.values[0]))).tolist()
     alone = len(tell) < 2
@@ -154,8 +155,13 @@ def differences_of(
         return None
     found, stiffness = fit_blocks(blocks), max(abs(float(fit.values[0])), 1e-300)
     differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
-    told = effects[:, 0] / stiffness
-    differences = beside_angle_errors(differences, blocks, found.residuals, stiffness, told, tell)
+    if mostly_error(blocks, stiffness):
+        return None
+    little = np.abs(effects[:, 0]) < TELLS * stiffness
+    left = {
+        block.label: found.residuals[block.label] * one for block, one in zip(blocks, little, strict=True)
+    }
+    differences = beside_angle_errors(differences, blocks, left, stiffness, tell)
     unsure = np.sqrt(np.diag(differences.covariance))
     if alone and (unsure > np.maximum(MUCH, np.abs(differences.shares) / SURE)).all():
         return None
@@ -168,26 +174,17 @@ def beside_angle_errors(
     blocks: Sequence[Block],
     residuals: Mapping[str, Array],
     stiffness: float,
-    told: Array,
     places: Sequence[int],
 ) -> Differences:
-    """Differences of blocks at `places` from the first of these, as unsure as errors of their angles make those that
-    tell less than the share TELLS of the stiffness: they may have drawn it to zero by any share up to what explains
-    the `residuals` of the fit of all blocks.
+    """Differences of standing blocks at `places` from the first of these, as unsure as errors of their angles make
+    them: they may have drawn a stiffness to zero by any share up to what explains the `residuals` of a fit of all.
 
     In a recording that hardly moves about an axis the angle is mostly its own error, which no torque follows: its
     stiffness alone is next to none, and what the fit leaves of it says nothing of that.
-
-    told: shares of the stiffness that the blocks tell.
     """
     if blocks[0].stances is not None:
         return differences
-    drawn = [
-        slow_share(blocks[place], residuals[blocks[place].label], stiffness)
-        if abs(told[place]) < TELLS
-        else 0.0
-        for place in places
-    ]
+    drawn = [slow_share(blocks[place], residuals[blocks[place].label], stiffness) for place in places]
     first, *others = np.square(UNIFORM * np.array(drawn))
     return differences._replace(covariance=differences.covariance + first + np.diag(others))
 
