@@ -151,7 +151,7 @@ void is_followed_through_the_air() {
   const Steps steps;
   const auto load = [](double t) {
     const double since = t - Steps::STANDS;
-    return since < 0.0 || std::fmod(since, Steps::STEP) < Steps::STANCE ? 0.8 * WEIGHT : 0.0;
+    return since < 0.0 || std::fmod(since, Steps::STEP) < Steps::STANCE ? (0.7 + 0.1 * std::sin(7.0 * t)) * WEIGHT : 0.0;
   };
   const FootEstimate found = after(Steps::STANDS + 29.9 * Steps::STEP, 400.0, false, 0.0, steps, load);
   check::near(found.pitch.stiffness.value, STIFFNESS, 1e-3 * STIFFNESS, "stiffness of steps");
