@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +19,6 @@ from plantar.feet.place.place_notes import BUSH_TURNED
 from plantar.feet.prepare_log import prepare
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
-from plantar.models.bush_model import BushModel
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
@@ -172,7 +173,7 @@ def test_in_stances_only_a_spring_and_one_that_slips_are_tried(
     """A stance is too short to tell more models apart, and there another model has to gain more."""
     tried: list[tuple[set[str], float]] = []
 
-    def told(data_sets: object, models: list[BushModel], *_: object, least_gain: float, **__: object) -> None:
+    def told(data_sets: object, models: Sequence[Any], *_: object, least_gain: float, **__: object) -> None:
         tried.append(({model.name for model in models}, least_gain))
         raise StopIteration
 
