@@ -1,4 +1,4 @@
-"""What MuJoCo's export says of a URDF that MuJoCo does not take as it is, and of a bush that is quick for its time step."""
+"""What MuJoCo's export says of a URDF that MuJoCo does not take, and of a bush that is quick for the time step."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ def test_moments_that_no_body_has_become_their_mean_and_that_is_said(tmp_path: P
 def test_a_link_without_weight_gets_a_tenth_of_a_gram(tmp_path: Path) -> None:
     mujoco = pytest.importorskip("mujoco")
     urdf = write_urdf(tmp_path / "b.urdf")
-    urdf.write_text(urdf.read_text().replace('<mass value="4"/>', '<mass value="0"/>').replace('"0.05"', '"0"'))
+    urdf.write_text(
+        urdf.read_text().replace('<mass value="4"/>', '<mass value="0"/>').replace('"0.05"', '"0"')
+    )
     codes = {note.code for note in export(result(urdf), "mjcf", tmp_path / "o.xml")}
     assert "export_inertia" in codes
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "o.xml"))

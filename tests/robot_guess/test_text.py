@@ -1,4 +1,4 @@
-"""The lines of a first robot file: what is measured, what is a guess and how far off it may be; YAML whatever the names."""
+"""The lines of a first robot file: what is measured, what is a guess, how far off it may be; always YAML."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def test_a_last_row_that_is_short_is_cut_off(end: bytes, texts: bool) -> None:
 def test_only_one_row_may_be_short_and_the_message_shows_how_it_begins() -> None:
     long = ",".join(map(str, range(100, 140)))
     for piece in (b"7,0\n" + long.encode() + b"\n8,1\n", b"5\n5\n"):
-        with pytest.raises(LogError, match="a row has (40|1) values where the header has 2: (100,101,102|5)") as told:
+        with pytest.raises(LogError, match=r"has (40|1) values where the header has 2: (100,101|5)") as told:
             read(lines(b"5"), piece)
         assert str(told.value).count(",") < 15, "a long row is not shown whole"
 
