@@ -243,6 +243,20 @@ void a_delay_stays_in_doubt_until_it_is_excluded() {
   check::that(!late(0.0035, 0.001), "it cannot be");
 }
 
+// Whatever its sign; several feet's by their weights, and what was told by its own deviation.
+void delays_add_by_their_weights() {
+  const auto late = [](Lateness seen, double told) { return DelayWatch().late(seen, told, PERIOD); };
+  Lateness both = Lateness::of(0.016, 0.002);
+  both += Lateness::of(0.004, 0.004);
+  check::near(both.sum / both.weight, (4.0 * 0.016 + 0.004) / 5.0, 1e-12, "the mean by squares of half widths");
+  check::near(1.0 / both.weight, 4e-6 * 16e-6 / 20e-6, 1e-15, "and its half width's square");
+  check::that(Lateness::of(0.01, 0.0).weight == 0.0 && !late(Lateness{}, 0.0), "nothing is seen");
+  check::that(late(Lateness::of(-0.012, 0.001), 0.0), "earlier");
+  check::that(late(Lateness::of(0.0105, 0.003), 0.002) && !late(Lateness::of(0.0095, 0.003), 0.002),
+              "twice the half width of both");
+  check::that(!DelayWatch().late(Lateness::of(0.012, 0.001), 0.0, 0.015), "less than a period of slow samples");
+}
+
 void an_unknown_zero_may_make_a_load_differ() {
   const auto differs = [](double share, int unknown) {
     WeightWatch watch(WEIGHT);
@@ -268,6 +282,22 @@ void noise_of_a_rate_is_that_of_its_angle() {
   const double edge = 2.0 * std::numbers::pi * CUTOFF;
   check::that(noise.of_angle[0] > 0.0, "there is noise");
   check::near(noise.of_rate[0] / noise.of_angle[0], edge * edge / 3.0, 1e-9, "a third of the cutoff's square");
+  // What passes of white noise is the cutoff's share of all frequencies, of every signal.
+  FootNoise all(CUTOFF), slow(CUTOFF);
+  WhiteNoise alone;
+  for (int tick = 0; tick < 5000; ++tick) {
+    const double read = std::sin(1e5 * tick);
+    alone.see(read, PERIOD);
+    const FootNoise::Signals now = {{read, 2.0 * read}, {3.0 * read, 4.0 * read}, {5.0 * read, 6.0 * read, 7.0 * read}, true};
+    all.follow(now, PERIOD, PERIOD), slow.follow(now, PERIOD, 0.021);
+  }
+  const double passes = 2.0 * CUTOFF * PERIOD * alone.variance();
+  for (int a = 0; a < 2; ++a) {
+    check::near(all.of_angle[a], std::pow(1.0 + a, 2) * passes, 1e-9 * passes, "of angles");
+    check::near(all.of_rate[a], std::pow(3.0 + a, 2) * passes, 1e-9 * passes, "of rates");
+    check::that(slow.of_angle[a] == 0.0 && slow.of_rate[a] == 0.0, "samples that are too slow show none");
+  }
+  for (int i = 0; i < 3; ++i) check::near(all.of_force[i], std::pow(5.0 + i, 2) * passes, 1e-9 * passes, "of forces");
 }
 
 // A spring and a damper, swayed by `size` [rad]: whether a memory is excluded, though the rows have none.
@@ -318,6 +348,7 @@ void run() {
   an_edge_is_told_from_where_its_visit_began();
   the_middle_of_a_small_sole_is_not_its_edge();
   a_delay_stays_in_doubt_until_it_is_excluded();
+  delays_add_by_their_weights();
   an_unknown_zero_may_make_a_load_differ();
   noise_of_a_rate_is_that_of_its_angle();
   a_memory_is_excluded_by_motions_that_would_have_shown_it();

@@ -83,7 +83,7 @@ void an_accelerometer_tells_up_slowly() {
       };
       reads(0.0, level);
       const double found = reads(TILT, level == 0.5 ? 0.5 : 5.0)[axis];
-      const double wanted = level == 0.5 ? 0.5 : 1.0 - std::exp(-2.0 * PI * BLEND_FREQUENCY * 5.0);
+      const double wanted = level == 0.5 ? 0.5 : 1.0 - std::exp(-2.0 * PI * 0.03 * 5.0);
       check::near(found, wanted * TILT, 0.02 * TILT, "a tilt of the accelerometer");
     }
 }
@@ -121,7 +121,7 @@ void a_low_pass_is_butterworths() {
 }
 
 void a_smooth_angle_takes_what_is_quick_from_the_rate() {
-  constexpr double DT = 0.001, BAND = 2.0 * PI * ANGLE_BAND;
+  constexpr double DT = 0.001, USUAL = 2.5, BAND = 2.0 * PI * USUAL;
   SmoothAngle step, slope, begins;
   step.pass(0.0, 0.0, DT), slope.pass(0.0, 1.0, DT);
   double angle = 0.0, leads = 0.0;
@@ -137,7 +137,7 @@ void a_smooth_angle_takes_what_is_quick_from_the_rate() {
   // Shares of white noise that go with the noise itself, in the mean up to the cutoff.
   for (const double cutoff : {1.0, 5.0}) {
     double share = 0.0;
-    for (int i = 0; i < 1000; ++i) share += 1e-3 / (1.0 + std::pow((i + 0.5) * 1e-3 * cutoff / ANGLE_BAND, 2));
+    for (int i = 0; i < 1000; ++i) share += 1e-3 / (1.0 + std::pow((i + 0.5) * 1e-3 * cutoff / USUAL, 2));
     check::near(smooth_share(cutoff), share, 1e-5, "of the angle");
     check::near(smooth_lag(cutoff), share / BAND, 1e-5, "and of the rate");
   }
