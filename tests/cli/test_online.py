@@ -59,7 +59,8 @@ def test_a_log_is_drawn(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize(
-    ("half", "text"), [(226.0, "230"), (3.46, "3.5"), (0.0123, "0.012"), (23.4e6, "23000000"), (None, "–")]
+    ("half", "text"),
+    [(226.0, "± 230"), (3.46, "± 3.5"), (0.0123, "± 0.012"), (23.4e6, "± 23000000"), (None, "–")],
 )
 def test_a_half_width_has_two_digits_and_no_power_of_ten(half: float | None, text: str) -> None:
     assert _plain(half) == text

@@ -140,7 +140,7 @@ def test_what_logs_promise_stands_under_foot_axis_and_symbol() -> None:
     keys = [("SD", axis, term) for axis in ("pitch", "roll") for term in ("stiffness", "damping")]
     choice = Choice(("a", "b"), dict(zip(keys, (1.5, 3.0, UNKNOWN, 12.0), strict=True)), 42.0)
     lines = printed(_table("Sets", [choice]))
-    heads = "logs SD pitch K SD pitch C SD roll K SD roll C usual condition"
+    heads = "logs SD pitch K SD pitch C SD roll K SD roll C mean condition"
     assert heads in [" ".join(line) for line in lines]
     assert lines[-1][:7] == ["a", "+", "b", "1.5", "3", "–", "12"]
     assert lines[-1][-1] == "42"

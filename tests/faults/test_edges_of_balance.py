@@ -187,4 +187,7 @@ def test_an_imu_that_tilts_another_way(monkeypatch: pytest.MonkeyPatch, turn: fl
     assert (found is not None) == told
     if found:
         assert found.code == "imu_turned"
-        assert f"turned by {turn:.0f} deg about the vertical (valid: within 10 deg;" in found.text
+        assert (
+            f"directions that are {turn:.0f} deg apart about the vertical (valid: within 10 deg;"
+            in found.text
+        )

@@ -196,7 +196,7 @@ def test_a_turned_imu_is_told(sway: MotionLog) -> None:
     placement = replace(robot.imu.placement, rpy=robot.imu.placement.rpy + np.array([0.0, 0.0, np.pi]))
     wrong = replace(robot, imu=replace(robot.imu, placement=placement))
     (finding,) = [one for one in check_log(wrong, sway) if one.code in ("imu_turned", "force_leans")]
-    assert "check the IMU's rpy" in finding.text
+    assert "check the IMU's link and rpy" in finding.text
 
 
 @pytest.mark.parametrize("degrees", [90, 180, -90])
@@ -229,7 +229,7 @@ def test_an_imu_turned_about_the_vertical_is_told_from_ten_degrees_on(
     findings = [one for one in check_balance(wrong, sway) if one.code == "imu_turned"]
     assert len(findings) == told
     for one in findings:
-        size = float(one.text.split("turned by ")[1].split(" deg")[0])
+        size = float(one.text.split("directions that are ")[1].split(" deg apart")[0])
         assert abs(size) == pytest.approx(abs(degrees), abs=2.0)
 
 

@@ -115,8 +115,8 @@ DRAWN_BY_LOT = (
     Mutant(
         "results/feet.py",
         "a notebook gets no advice",
-        "feet_text.advice(self.parameters)]\n        delay = feet_text.delay_line(self.sensor_delay)\n        return t",
-        "()]\n        delay = feet_text.delay_line(self.sensor_delay)\n        return t",
+        "[*feet_text.weak_lines(self.parameters), *delay",
+        "[*delay",
         ("results/test_feet.py",),
     ),
     Mutant(

@@ -148,8 +148,8 @@ DRAWN_EVERYWHERE = (
     Mutant(
         "logs/readers/streams.py",
         "a stamp that repeats is kept",
-        "> latest[:-1]",
-        ">= latest[:-1]",
+        "> before[:-1]",
+        ">= before[:-1]",
         ("logs/readers/test_streams.py",),
     ),
     Mutant(

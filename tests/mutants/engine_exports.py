@@ -16,7 +16,7 @@ ENGINE_EXPORTS = (
     ),
     Mutant(
         "exporters/mjcf/hysteresis.py", "the tendon rests at the slip angle",
-        'springlength="0"', 'springlength="0.01"',
+        '"springlength": "0"', '"springlength": "0.01"',
         ("exporters/test_mjcf_hysteresis.py",),
     ),
     Mutant(
@@ -137,7 +137,7 @@ ENGINE_EXPORTS = (
     ),
     Mutant(
         "exporters/sdf/drake.py", "the bush's joints are motors",
-        'effort.text = "0"', 'effort.text = "1"', ("exporters/test_drake_bushing.py",),
+        '"effort").text = "0"', '"effort").text = "1"', ("exporters/test_drake_bushing.py",),
     ),
     Mutant(
         "exporters/mjcf/file.py", "the whole scene stands on the feet",

@@ -136,8 +136,8 @@ LITERAL_EDGES = (
         "[joints_note(feet)] if target in WITH_JOINTS else []", "[joints_note(feet)]", ("exporters/test_edges.py",),
     ),
     Mutant(
-        "exporters/contact/bullet.py", "links below the ankle stand above it",
-        "points @ place[:3, :3].T + place[:3, 3]", "points @ place[:3, :3].T - place[:3, 3]",
+        "exporters/shapes.py", "links below the ankle stand above it",
+        "corners @ place[:3, :3].T + place[:3, 3]", "corners @ place[:3, :3].T - place[:3, 3]",
         ("exporters/test_sole_level.py",),
     ),
     Mutant(

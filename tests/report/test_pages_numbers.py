@@ -50,11 +50,12 @@ def test_what_is_used_of_each_log_adds_up_by_motion_and_foot() -> None:
         Phase("walk", "right", 0.0, 10.0, "single", True, None),
         Phase("sway", "left", 1.0, 6.0, "double", True, None),
         Phase("sway", "left", 6.0, 21.0, "double", False, "slides"),
+        Phase("sway", "left", 21.0, 21.03, "transition", False, "a moment, which nobody reads"),
     ]
     table = used_table(phases)
     assert heads(table) == ["motion", "foot", "length [s]", "used [s]", "share", "left out because"]
     assert texts(table) == [
-        ["walk", "left", "8.00", "2.00", "25 %", "tips (2.00 s); air (4.00 s)"],
+        ["walk", "left", "8.00", "2.00", "25 %", "tips (2.0 s); air (4.0 s)"],
         ["walk", "right", "10.0", "10.0", "100 %", "nothing left out"],
         ["sway", "left", "20.0", "5.00", "25 %", "slides (15.0 s)"],
     ]

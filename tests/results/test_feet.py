@@ -24,12 +24,11 @@ from plantar.notes import Note
 from plantar.results.feet import Comparison, FeetResult
 from plantar.results.feet_rows import AxisModel, Candidate, DelayEstimate, LinearEquivalent, Parameter
 from plantar.results.feet_text import (
-    advice,
     delay_line,
     parameter_cells,
     prediction_cells,
-    reasons,
     title_of_axis,
+    weak_lines,
 )
 from plantar.results.text import columns, html_lines, html_table, warnings
 
@@ -160,8 +159,11 @@ def test_a_number_is_printed_with_half_of_its_interval_in_units_and_percent() ->
 
 def test_advice_is_given_where_there_is_one_and_told_once() -> None:
     bare, lost = replace(C, name="slip_torque", advice=None), replace(Z, advice="sway faster")
-    assert advice([K, C, bare, lost]) == ["  for left pitch damping, left z stiffness: sway faster"]
-    assert reasons([K, C, bare]) == ["  left pitch damping, left pitch slip torque (weak): wide"]
+    *why, head, todo = weak_lines([K, C, bare, lost])
+    assert why[:2] == ["Not usable as they are", "  left pitch damping, left pitch slip torque (weak): wide"]
+    assert (head, todo) == ("What to record next", "  for left pitch damping, left z stiffness: sway faster")
+    assert weak_lines([K]) == []
+    assert "What to record next" not in weak_lines([bare])
 
 
 def test_the_text_has_every_number_its_verdict_reason_and_advice(result: FeetResult) -> None:

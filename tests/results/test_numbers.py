@@ -16,6 +16,7 @@ from plantar.results.numbers import interval, number, unit, with_uncertainty
         (239136.0, 96170.0, "239000 ± 96000"),
         (951.2, 312.0, "950 ± 310"),
         (-0.051, 0.004, "−0.051 ± 0.004"),
+        (-0.0003, 0.1, "0.00 ± 0.10"),  # rounded to zero: no minus
         (5.0, None, "5.000"),
         (None, 1.0, "–"),
         (float("nan"), 1.0, "–"),
@@ -33,7 +34,7 @@ def test_intervals_and_numbers_read_well() -> None:
     assert interval((947.02, 951.37)) == "947.0 to 951.4"
     assert interval((12345.6, 23456.7)) == "12300 to 23500"
     assert interval((3857549.0, 2.701e8)) == "0.04e8 to 2.70e8"
-    assert interval((-1.0, 2.5e7)) == "−0.00e7 to 2.50e7"
+    assert interval((-1.0, 2.5e7)) == "0.00e7 to 2.50e7"
     assert interval(None) == "–"
     assert number(0.0) == "0"
     assert number(123456.0, 3) == "123456"

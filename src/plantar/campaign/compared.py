@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.results.feet import FeetResult, ValidationRow
+from plantar.results.feet_text import over_all_motions
 from plantar.twin.bush import Bush, Feet
 
 
@@ -92,22 +93,17 @@ def parameters_beside(result: FeetResult, paper_way: FeetResult, truth: Feet) ->
 
 def direct_beside(result: FeetResult, paper_way: FeetResult) -> tuple[DirectBeside, ...]:
     """Table 2: the fitted motions, one after the other."""
-    theirs = dict(_composed(paper_way.validation))
+    theirs = _composed(paper_way.validation)
     rows = []
-    for place, (mean, largest) in _composed(result.validation):
+    for place, row in _composed(result.validation).items():
         other, published = theirs.get(place), TABLE_2.get(place)
         rows.append(
             DirectBeside(
-                *place,
-                mean_abs_error=mean,
-                max_abs=largest,
-                percent_of_max=100 * mean / largest,
-                paper_way=other[0] if other else None,
-                paper_way_percent_of_max=100 * other[0] / other[1] if other else None,
-                published=published.mean_abs_error if published else None,
-                published_percent_of_max=published.percent_of_max if published else None,
+                *place, row.mean_abs_error, row.max_abs, 100 * row.mean_abs_error / row.max_abs,
+                other.mean_abs_error if other else None, other.percent_of_max if other else None,
+                published.mean_abs_error if published else None, published.percent_of_max if published else None,
             )
-        )
+        )  # fmt: skip
     return tuple(rows)
 
 
@@ -138,16 +134,7 @@ def _percent(value: float | None, truth: float) -> float | None:
     return None if value is None or truth == 0 else 100 * (value - truth) / truth
 
 
-def _composed(rows: Iterable[ValidationRow]) -> list[tuple[tuple[str, str], tuple[float, float]]]:
-    """Mean error over all samples of direct validation, and the largest torque, by foot and axis."""
-    found: dict[tuple[str, str], list[ValidationRow]] = {}
-    for row in rows:
-        if row.kind == "direct":
-            found.setdefault((row.foot, row.axis), []).append(row)
-    return [(place, _pooled(group)) for place, group in found.items()]
-
-
-def _pooled(group: list[ValidationRow]) -> tuple[float, float]:
-    samples = sum(row.samples for row in group)
-    mean = sum(row.mean_abs_error * row.samples for row in group) / samples
-    return mean, max(row.max_abs for row in group)
+def _composed(rows: Iterable[ValidationRow]) -> dict[tuple[str, str], ValidationRow]:
+    """Direct validation over the samples of all motions, by foot and axis."""
+    merged = over_all_motions([row for row in rows if row.kind == "direct"])
+    return {(row.foot, row.axis): row for row, _, _ in merged}

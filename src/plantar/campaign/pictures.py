@@ -80,9 +80,8 @@ def _postures(robot: RobotModel, named: Sequence[tuple[str, str]], number: int, 
     look = look_of(robot)
     drawn = [(f"{motion}\n{state}", boxes(look, planned(motion, robot))) for motion, state in named]
     caption = "As planned, on rigid feet; right limbs red, left limbs blue."
-    return Plate(
-        f"figure{number:02d}_postures", number, f"Figure {number}. {title}.", caption, stances(drawn)
-    )
+    name = f"figure{number:02d}_postures"
+    return Plate(name, number, f"Figure {number}. {title}.", caption, stances(drawn))
 
 
 def _locus(campaign: Campaign, motion: str, number: int, letter: str) -> Plate:

@@ -58,9 +58,8 @@ class Score:
 def candidates(result: FeetResult, guesses: Sequence[str] = tuple(GUESSES)) -> dict[str, Feet | None]:
     """The kinds of feet to compare: identified, rigid (None), and the guesses in use elsewhere."""
     identified = feet_of(result)
-    return {IDENTIFIED: identified, RIGID: None} | {
-        name: dict.fromkeys(identified, GUESSES[name]) for name in guesses
-    }
+    guessed = {name: dict.fromkeys(identified, GUESSES[name]) for name in guesses}
+    return {IDENTIFIED: identified, RIGID: None} | guessed
 
 
 def hands_of(robot: RobotModel, motions: Sequence[str]) -> dict[str, Hand]:
@@ -100,16 +99,9 @@ def replay_rows(
             rows += [
                 ReplayRow(name, motion, axis, "rad", error) for axis, error in zip(CHEST, chest, strict=True)
             ]
-            rows += [
-                ReplayRow(
-                    name,
-                    motion,
-                    f"{foot} {axis} torque",
-                    "N.m",
-                    one.torque_error(foot, axis) if one else None,
-                )
-                for foot, axis in places
-            ]
+            for foot, axis in places:
+                error = one.torque_error(foot, axis) if one else None
+                rows.append(ReplayRow(name, motion, f"{foot} {axis} torque", "N.m", error))
     return tuple(rows)
 
 

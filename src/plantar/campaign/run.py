@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from threading import Lock
@@ -127,13 +127,8 @@ def run_campaign(
         selection, tuple(replays), replayed,
     )  # fmt: skip
     progress("save the numbers")
-    result = replace(
-        result,
-        comparisons=(
-            Comparison(PAPER_WAY_NAME, paper_way.settings, paper_way.parameters, paper_way.validation),
-        ),
-        campaign=_as_data(campaign, preset, seed, truth),
-    )
+    beside = Comparison(PAPER_WAY_NAME, paper_way.settings, paper_way.parameters, paper_way.validation)
+    result = replace(result, comparisons=(beside,), campaign=_as_data(campaign, preset, seed, truth))
     campaign = replace(campaign, result=result)
     campaign.result.save(directory)
     return campaign
@@ -168,16 +163,12 @@ def _as_data(campaign: Campaign, preset: str, seed: int, truth: Feet) -> dict[st
         "preset": preset,
         "seed": seed,
         "truth": {foot: vars(bush) for foot, bush in truth.items()},
-        "table_1": _rows(campaign.parameters),
-        "table_2": _rows(campaign.direct),
-        "table_3": _rows(campaign.cross),
+        "table_1": [asdict(row) for row in campaign.parameters],
+        "table_2": [asdict(row) for row in campaign.direct],
+        "table_3": [asdict(row) for row in campaign.cross],
         "selection": choice_rows(campaign.selection),
-        "replay": _rows(campaign.replayed),
+        "replay": [asdict(row) for row in campaign.replayed],
     }
-
-
-def _rows(rows: Sequence[ParameterBeside | DirectBeside | CrossBeside | ReplayRow]) -> list[dict[str, Any]]:
-    return [asdict(row) for row in rows]
 
 
 def shares(what: str, count: int, progress: Callable[[str], None]) -> Callable[[str, float], None]:

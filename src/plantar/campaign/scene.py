@@ -53,12 +53,9 @@ def _bodies(look: Description, feet: dict[str, CutFoot], robot: RobotModel) -> l
     for place, body in enumerate(look.bodies):
         pose = np.eye(4)
         pose[:3, :3], pose[:3, 3] = body.rotation, body.xyz
-        boxes = (
-            (plates[place],) if place in plates else tuple((shape.xyz, shape.size) for shape in body.shapes)
-        )
-        made.append(
-            SceneBody(body.parent, pose, body.axis, body.kind == "prismatic", boxes, side_of(body.name))
-        )
+        shapes = [plates[place]] if place in plates else [(shape.xyz, shape.size) for shape in body.shapes]
+        slides, side = body.kind == "prismatic", side_of(body.name)
+        made.append(SceneBody(body.parent, pose, body.axis, slides, tuple(shapes), side))
     return made
 
 

@@ -88,9 +88,7 @@ def table_3(rows: Sequence[CrossBeside]) -> Table:
     columns = Column.words("motion", "foot")
     for axis in ROTATIONAL_AXES:
         columns += [Column(axis, "N·m"), Column(PAPER_WAY, "N·m"), Column(PAPER, "N·m")]
-    remark = (
-        "Mean |error| of the torque on motions that the fit has not seen; a dash where the paper has none."
-    )
+    remark = "Mean |error| of the torque on motions that the fit has not seen; a dash: the paper has none."
     return Table.of("Table 3 beside the paper: cross-validation", columns, lines, remark=remark)
 
 

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperArgument, TyperCommand, TyperGroup
 
 from plantar import __version__
 from plantar.errors import PlantarError
@@ -92,7 +92,7 @@ def _application(arguments: list[str]) -> typer.Typer:
         *group, name = verb.split()
         holder = groups[group[0]] if group else application
         command = import_module(f"plantar.cli.{module}").run if verb == called else _not_called
-        holder.command(name, help=None if verb == called else text, short_help=text)(command)
+        holder.command(name, cls=_Command, help=None if verb == called else text, short_help=text)(command)
     for name, group_application in groups.items():
         application.add_typer(group_application, name=name)
     return application
@@ -115,6 +115,30 @@ def _called(arguments: list[str]) -> str:
     """The verb in the arguments, of one or two words; options of the root come before it."""
     words = [word for word in arguments if not word.startswith("-")]
     return " ".join(words[:2]) if words and words[0] in GROUPS else words[0] if words else ""
+
+
+class _Command(TyperCommand):
+    """Arguments as manuals write them: no braces around what is required, no types, which their help tells."""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        return ["[OPTIONS]", *(_written(one) for one in self.params if isinstance(one, TyperArgument))]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        sections: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
+        for one in self.get_params(ctx):
+            if told := one.get_help_record(ctx):
+                named = isinstance(one, TyperArgument)
+                sections["Arguments" if named else "Options"].append(
+                    (str(one.metavar), told[1]) if named else told
+                )
+        for title, rows in sections.items():
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
+def _written(one: TyperArgument) -> str:
+    return str(one.metavar) if one.required else f"[{one.metavar}]"
 
 
 class _Listed(TyperGroup):

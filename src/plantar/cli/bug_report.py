@@ -10,8 +10,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated
 
-import typer
 import yaml
+from typer import Argument
 
 import plantar
 from plantar.cli.console import options
@@ -30,7 +30,7 @@ PATH = re.compile(rf"(?<![\w./\\])(?:(?:[A-Za-z]:|~)[/\\]{INNER}?|[/\\]{INNER})"
 
 def run(
     robot: options.Robot,
-    logs: Annotated[list[Path], typer.Argument(help="Logs that show the trouble.", metavar="LOG...")],
+    logs: Annotated[list[Path], Argument(help="Logs that show the trouble.", metavar="LOG...")],
     memory: options.Memory = None,
 ) -> None:
     """What to send with a question: versions, the robot file's settings and what `inspect` says, as Markdown to paste.

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
@@ -27,15 +27,11 @@ MILLI = 1e3
 def run(
     result: options.FeetFile,
     robot: options.Robot,
-    logs: Annotated[
-        list[Path], typer.Argument(help="Logs with joints, attitude and wrenches.", metavar="LOG...")
-    ],
-    simulator: Annotated[
-        str, typer.Option("--simulator", metavar="NAME", help="Only mujoco so far.")
-    ] = "mujoco",
+    logs: Annotated[list[Path], Argument(help="Logs with joints, attitude and wrenches.", metavar="LOG...")],
+    simulator: Annotated[str, Option("--simulator", metavar="NAME", help="Only mujoco so far.")] = "mujoco",
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder for comparison.svg and comparison.json."),
+        Option("--out", metavar="DIR", help="Folder for comparison.svg and comparison.json."),
     ] = None,
     swing: options.Swing = None,
     pivot: options.Pivot = "ground",

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from plantar.cli.console import options
 from plantar.errors import PlantarError
@@ -20,17 +20,15 @@ ROBOT_HELP = "Robot file, for its topics and column map, and for the frames of a
 
 
 def run(
-    logs: Annotated[list[Path], typer.Argument(help=LOGS_HELP, metavar="LOG...")],
-    out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")],
+    logs: Annotated[list[Path], Argument(help=LOGS_HELP, metavar="LOG...")],
+    out: Annotated[Path, Option("--out", help=OUT_HELP, metavar="FILE")],
     to: Annotated[
         str,
-        typer.Option(
-            "--to", metavar="FORMAT", help="Format of the files in a directory: csv, parquet or mcap."
-        ),
+        Option("--to", metavar="FORMAT", help="Format of the files in a directory: csv, parquet or mcap."),
     ] = "parquet",
-    robot: Annotated[Path | None, typer.Option("--robot", help=ROBOT_HELP, metavar="ROBOT.yaml")] = None,
+    robot: Annotated[Path | None, Option("--robot", help=ROBOT_HELP, metavar="ROBOT.yaml")] = None,
     memory: options.Memory = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not print what was assumed.")] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Do not print what was assumed.")] = False,
 ) -> None:
     """A log in another format: a table with plantar's columns, or a ROS 2 bag.
 

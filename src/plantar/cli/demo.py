@@ -7,13 +7,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Option
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, progress, table
+from plantar.cli.console.terminal import console, end_progress, print_json, progress, table
 from plantar.errors import needs
 from plantar.files import refuse_file
-from plantar.results.io import dump_json
 
 if TYPE_CHECKING:
     from plantar.campaign import Campaign
@@ -28,12 +27,12 @@ PRESET_HELP = (
 
 def run(
     out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder for logs, result, figures and report.")
+        Path, Option("--out", metavar="DIR", help="Folder for logs, result, figures and report.")
     ] = Path("out/demo"),
-    preset: Annotated[str, typer.Option(metavar="PRESET", help=PRESET_HELP)] = "realistic",
-    seed: Annotated[int, typer.Option(help="Seed of noise, biases and zeros.", min=0)] = 0,
-    quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,
+    preset: Annotated[str, Option(metavar="PRESET", help=PRESET_HELP)] = "realistic",
+    seed: Annotated[int, Option(metavar="N", help="Seed of noise, biases and zeros.", min=0)] = 0,
+    quick: Annotated[bool, Option("--quick", help="Two motions only: to see it run.")] = False,
+    json: Annotated[bool, Option("--json", help="Print result.json instead of tables.")] = False,
     quiet: options.Quiet = False,
 ) -> None:  # fmt: skip
     """The paper's campaign on a robot in MuJoCo whose feet are known: play, record, identify, validate, report.
@@ -52,7 +51,7 @@ def run(
     written = write_campaign_report(campaign, step)
     end_progress(quiet)
     if json:
-        print(dump_json(campaign.result.to_dict()), end="")
+        print_json(**campaign.result.to_dict())
     elif not quiet:
         _print(campaign)
         paths = (out / "result.json", written.report, written.scene, out / "figures")
@@ -81,11 +80,8 @@ def _print(campaign: Campaign) -> None:
 
 
 def _drawn(made: Table) -> object:
-    headings = [
-        f"{column.heading} [{column.unit}]" if column.unit else column.heading for column in made.columns
-    ]
+    headings = [f"{one.heading} [{one.unit}]" if one.unit else one.heading for one in made.columns]
     rows = [[cell.text for cell in row] for row in made.rows]
-    styles = [
-        next((MARKS[cell.mark] for cell in row if cell.mark in ("bad", "weak")), "") for row in made.rows
-    ]
+    told = ("bad", "weak")
+    styles = [next((MARKS[cell.mark] for cell in row if cell.mark in told), "") for row in made.rows]
     return table(made.caption, headings, rows, styles)

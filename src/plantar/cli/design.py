@@ -5,11 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, BadParameter, Option
 
 from plantar.choices import one_of
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
+from plantar.cli.console.terminal import (
+    console,
+    end_progress,
+    number,
+    print_json,
+    print_notes,
+    progress,
+    table,
+)
 from plantar.errors import PlantarError, needs
 from plantar.files import write_text
 from plantar.logs.save import save_log
@@ -25,49 +33,51 @@ if TYPE_CHECKING:
 
 
 def run(
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML) of a biped.", metavar="ROBOT.yaml")],
+    robot: Annotated[Path, Argument(help="Robot file (YAML) of a biped.", metavar="ROBOT.yaml")],
     out: Annotated[
         Path,
-        typer.Option(
+        Option(
             metavar="MOTION.csv",
             help="CSV of the motion. A JSON file with the predicted intervals, a page and a preview go beside it.",
         ),
     ],
     stiffness: Annotated[
         float | None,
-        typer.Option(
+        Option(
             metavar="K",
             help="Stiffness of each foot in pitch and roll, as far as you know it, in N·m/rad. Give this or --after.",
         ),
     ] = None,
     after: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="An earlier result: its stiffness is used, and the motion is made for what is weak in it.",
             metavar="RESULT.json",
         ),
     ] = None,
     damping: Annotated[
         float | None,
-        typer.Option(
+        Option(
             metavar="C",
             help="Damping in N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out.",
         ),
     ] = None,
-    duration: Annotated[float, typer.Option(metavar="S", help="Duration of the motion, in s.")] = 60.0,
-    rate: Annotated[float, typer.Option(metavar="HZ", help="Rows per second in the file, in Hz.")] = 200.0,
+    duration: Annotated[float, Option(metavar="S", help="Duration of the motion, in s.")] = 60.0,
+    rate: Annotated[float, Option(metavar="HZ", help="Rows per second in the file, in Hz.")] = 200.0,
     criterion: Annotated[
         str,
-        typer.Option(
+        Option(
             metavar="CRITERION",
             help="What the search makes small: 'widest', the widest relative interval; or, of all parameters "
             "together, D (their volume) or A (their mean square).",
         ),
     ] = "widest",
-    seed: Annotated[int, typer.Option(help="Seed of the random frequencies and of the search.", min=0)] = 0,
+    seed: Annotated[
+        int, Option(metavar="N", help="Seed of the random frequencies and of the search.", min=0)
+    ] = 0,
     to: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             metavar="FORMAT",
             help="Also for a controller: ros (JointTrajectory as YAML), mcap (in a bag), openhrp (.pos), "
             "mc_rtc (.bin, for its Replay plugin).",
@@ -75,11 +85,11 @@ def run(
     ] = None,
     approach: Annotated[
         bool,
-        typer.Option("--approach", help="Also versions with 25 and 50 % of the amplitude, to play first."),
+        Option("--approach", help="Also versions with 25 and 50 % of the amplitude, to play first."),
     ] = False,
     like: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="MOTIONS", help="'campaign': for comparison, the best of the paper's fourteen motions."
         ),
     ] = None,
@@ -106,7 +116,7 @@ def run(
     settings = DesignSettings(stiffness, damping, duration, criterion, seed)  # type: ignore[arg-type]
     step = progress(quiet)
     if stiffness is None and (after is None or like is not None):
-        raise typer.BadParameter("tell --stiffness, or an earlier result with --after")
+        raise BadParameter("tell --stiffness, or an earlier result with --after")
     earlier = None if after is None else FeetResult.load(after, residuals=False)
     if like is not None:
         one_of("--like", like, ("campaign",))
@@ -119,7 +129,7 @@ def run(
     write_plan_scene(found.robot, found.trajectory.plan(), found.nominal.bushes, out.with_suffix(".html"))
     end_progress(quiet)
     if json:
-        print(dump_json(content), end="")
+        print_json(**content)
         return
     screen = console()
     rows = [
@@ -135,14 +145,8 @@ def run(
          number(one["friction"], 2), number(100 * one["effort"], 3), number(one["bend"], 2))
         for one in content["rehearsals"]
     ]  # fmt: skip
-    heads = (
-        "stiffness",
-        "margin on the soles [mm]",
-        "least load [%]",
-        "friction",
-        "torque [% of limit]",
-        "bend [rad]",
-    )
+    margin, torque = "margin on the soles [mm]", "torque [% of limit]"
+    heads = ("stiffness", margin, "least load [%]", "friction", torque, "bend [rad]")
     screen.print(table("\nRehearsed", heads, rows))
     print_notes(screen, [Note("rehearsal", "warning", text) for text in content["notes"]])
     for ending in (".csv", ".json", ".md", ".html"):
@@ -166,28 +170,17 @@ def _of_the_paper(
     found = paper_motions(robot, Softness.told(robot, stiffness, damping), step)
     best_set = found.selection.best[-1].motions
     content = {
-        "schema": "plantar.design/1",
-        "robot": robot.name,
-        "motion": out.name,
-        "like": "campaign",
-        "best": found.best.name,
-        "best_set": best_set,
-        "parameters": found.half_widths(),
-        "refused": found.refused,
-    }
+        "schema": "plantar.design/1", "robot": robot.name, "motion": out.name, "like": "campaign",
+        "best": found.best.name, "best_set": best_set, "parameters": found.half_widths(), "refused": found.refused,
+    }  # fmt: skip
     save_log(found.log(rate), out)
     write_text(out.with_suffix(".json"), dump_json(content))
     if json:
-        print(dump_json(content), end="")
+        print_json(**content)
         return
+    names, widths = ("foot", "axis", "name"), ("percent", "best_set_percent")
     rows = [
-        (
-            str(row["foot"]),
-            str(row["axis"]),
-            str(row["name"]),
-            f"{row['percent']:.3g}",
-            f"{row['best_set_percent']:.3g}",
-        )
+        (*(str(row[key]) for key in names), *(f"{row[key]:.3g}" for key in widths))
         for row in found.half_widths()
     ]
     screen = console()

@@ -7,19 +7,15 @@ from dataclasses import asdict
 from rich.markup import escape
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
-from plantar.cli.identify.feet_tables import advised
+from plantar.cli.console.terminal import VERDICT_STYLE, console, number, print_json, table
+from plantar.cli.identify.feet_tables import print_advice
 from plantar.errors import PlantarError
 from plantar.results.feet import FeetResult
 from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
-from plantar.results.io import dump_json
 from plantar.results.usage import used_shares
 
 
-def run(
-    result: options.FeetFile,
-    json: options.Json = False,
-) -> None:
+def run(result: options.FeetFile, json: options.Json = False) -> None:
     """What limits each number of a result, and which recording would make it tighter.
 
     Example: plantar diagnose out/feet/result.json
@@ -27,18 +23,9 @@ def run(
     found = FeetResult.load(result, residuals=False)
     diagnosis, used = found.diagnosis, used_shares(found.phases)
     if json:
-        rows = [asdict(row) for row in diagnosis]
-        print(
-            dump_json(
-                {
-                    "schema": "plantar.diagnosis/1",
-                    "diagnosis": rows,
-                    "assumptions": [asdict(row) for row in found.assumptions],
-                    "served": [share.to_dict() for share in used],
-                }
-            ),
-            end="",
-        )
+        rows, allowed_for = ([asdict(row) for row in part] for part in (diagnosis, found.assumptions))
+        served = [share.to_dict() for share in used]
+        print_json(schema="plantar.diagnosis/1", diagnosis=rows, assumptions=allowed_for, served=served)
         return
     screen = console()
     verdicts = {(row.foot, row.axis, row.name): row.verdict for row in found.parameters}
@@ -54,17 +41,11 @@ def run(
     styles = [VERDICT_STYLE[verdicts[row.foot, row.axis, row.name]] for row in diagnosis]
     heads = ("foot", "axis", "parameter", "± % (95 %)", "limited by", "share of the variance")
     screen.print(table("What limits each number", heads, cells, styles))
-    for verdict, names, rest in advised(found.parameters):
-        screen.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
+    print_advice(screen, found.parameters)
     for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
     if allowed := assumption_cells(found.assumptions):
         screen.print(table("\nWhat the robot file may be wrong about", ASSUMPTION_HEADS, allowed))
     shares = [(one.motion, one.foot, f"{one.seconds:.1f}", f"{one.used:.1f}", one.reasons) for one in used]
-    screen.print(
-        table(
-            "\nHow much of each log was used",
-            ("motion", "foot", "seconds", "used", "left out because"),
-            shares,
-        )
-    )
+    columns = ("motion", "foot", "seconds", "used", "left out because")
+    screen.print(table("\nHow much of each log was used", columns, shares))

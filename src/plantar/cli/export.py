@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from plantar.cli.console import options
 from plantar.exporters import TARGETS, export
@@ -23,19 +23,17 @@ OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 
 def run(
     result: Annotated[
-        Path, typer.Argument(help="A result.json of identify feet or inertia.", metavar="RESULT.json")
+        Path, Argument(help="A result.json of identify feet or inertia.", metavar="RESULT.json")
     ],
-    to: Annotated[str, typer.Option("--to", help=TARGET_HELP, metavar="TARGET")],
-    out: Annotated[Path, typer.Option("--out", help="The file to write.", metavar="FILE")],
-    model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
-    with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
+    to: Annotated[str, Option("--to", help=TARGET_HELP, metavar="TARGET")],
+    out: Annotated[Path, Option("--out", help="The file to write.", metavar="FILE")],
+    model: Annotated[Path | None, Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
+    with_offset: Annotated[bool, Option("--with-offset", help=OFFSET_HELP)] = False,
     swing: options.Swing = None,
-    hysteresis: Annotated[bool, typer.Option("--hysteresis", help=HYSTERESIS_HELP)] = False,
+    hysteresis: Annotated[bool, Option("--hysteresis", help=HYSTERESIS_HELP)] = False,
     pivot: options.Pivot = "ground",
     least_load: options.LeastLoad = LEAST_LOAD,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No notes on what the target cannot hold.")
-    ] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="No notes on what the target cannot hold.")] = False,
 ) -> None:
     """Write a result for a simulator or controller: springs and dampers in its own format and units.
 

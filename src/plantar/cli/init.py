@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from plantar.errors import PlantarError
 from plantar.files import write_text
@@ -18,11 +18,11 @@ LOGS_HELP = "Logs of the robot standing, to find sensors in and to check the fil
 
 
 def run(
-    urdf: Annotated[Path, typer.Argument(help="The robot's URDF.", metavar="URDF")],
-    logs: Annotated[list[Path] | None, typer.Argument(help=LOGS_HELP, metavar="[LOG...]")] = None,
-    out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")] = Path("robot.yaml"),
-    columns: Annotated[Path | None, typer.Option("--columns", help=COLUMNS_HELP, metavar="FILE")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over an existing file.")] = False,
+    urdf: Annotated[Path, Argument(help="The robot's URDF.", metavar="URDF")],
+    logs: Annotated[list[Path] | None, Argument(help=LOGS_HELP, metavar="LOG...")] = None,
+    out: Annotated[Path, Option("--out", help=OUT_HELP, metavar="FILE")] = Path("robot.yaml"),
+    columns: Annotated[Path | None, Option("--columns", help=COLUMNS_HELP, metavar="FILE")] = None,
+    force: Annotated[bool, Option("--force", help="Write over an existing file.")] = False,
 ) -> None:
     """Write a first robot file: feet and soles from the URDF, sensors from the logs; every guess is marked.
 

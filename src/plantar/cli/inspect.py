@@ -10,6 +10,7 @@ import numpy as np
 import typer
 from rich.console import Console
 from rich.markup import escape
+from typer import Argument, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import (
@@ -18,6 +19,7 @@ from plantar.cli.console.terminal import (
     console,
     end_progress,
     number,
+    print_json,
     progress,
     table,
 )
@@ -26,18 +28,17 @@ from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
 from plantar.notes import Note
 from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
-from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
 
 def run(
     robot: options.Robot,
-    logs: Annotated[list[Path], typer.Argument(help="Logs to look at.", metavar="LOG...")],
-    columns: Annotated[bool, typer.Option("--columns", help="Also the range of every column.")] = False,
+    logs: Annotated[list[Path], Argument(help="Logs to look at.", metavar="LOG...")],
+    columns: Annotated[bool, Option("--columns", help="Also the range of every column.")] = False,
     memory: options.Memory = None,
     json: options.Json = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot be used.")
+        bool, Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot be used.")
     ] = False,
 ) -> None:
     """What is in the logs, what is wrong with them, and what each can identify by itself.
@@ -57,10 +58,7 @@ def run(
         summaries.append(inspect_log(loaded, log))
     end_progress(quiet)
     if json:
-        print(
-            dump_json({"schema": "plantar.inspect/1", "logs": [summary.to_dict() for summary in summaries]}),
-            end="",
-        )
+        print_json(schema="plantar.inspect/1", logs=[summary.to_dict() for summary in summaries])
     elif not quiet:
         for summary in summaries:
             _print(console(), summary, columns, "URDF" if loaded.weighed is None else "robot, as weighed,")
@@ -87,18 +85,14 @@ def _print(out: Console, log: LogSummary, columns: bool, weighs: str) -> None:
             f"weighs {log.mass:.2f} kg"
         )
     for finding in log.findings:
-        mark = (
-            "[red]problem[/]"
-            if finding.fatal
-            else f"[{SEVERITY_STYLE[finding.severity]}]{finding.severity}[/]"
+        style, kind = (
+            ("red", "problem") if finding.fatal else (SEVERITY_STYLE[finding.severity], finding.severity)
         )
-        out.print(f"  {mark}: {escape(finding.text)}")
+        out.print(f"  [{style}]{kind}[/]: {escape(finding.text)}")
     if log.feet:
         out.print(table("Feet", ("foot", "both stand s", "alone s", "load N", "used s", "pitch deg rms", "roll deg rms",
                                  "pitch rad/s rms", "roll rad/s rms"), _foot_rows(log)))  # fmt: skip
-    told = {finding.text for finding in log.findings} | {
-        f"{log.name}: {finding.text}" for finding in log.findings
-    }
+    told = {f"{of}{finding.text}" for finding in log.findings for of in ("", f"{log.name}: ")}
     warnings = [note for note in log.notes if note.severity == "warning" and note.text not in told]
     _print_notes(out, warnings)
     if log.parameters:

@@ -9,8 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-from rich.markup import escape
+from typer import Argument, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import (
@@ -18,11 +17,12 @@ from plantar.cli.console.terminal import (
     console,
     end_progress,
     number,
+    print_json,
     print_notes,
     progress,
     table,
 )
-from plantar.cli.identify.feet_tables import advised
+from plantar.cli.identify.feet_tables import print_advice
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.errors import SettingsError
 from plantar.logs.motion_log import MotionLog
@@ -33,7 +33,6 @@ from plantar.online.replay import UNKNOWN, Replay
 from plantar.online.verdicts import judged, log_notes
 from plantar.pages import ONLINE
 from plantar.results.feet import FeetResult, Parameter
-from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
 
 if TYPE_CHECKING:  # what prints nothing does not import it
@@ -56,36 +55,39 @@ RESULT_HELP = (
 
 def run(
     robot: options.Robot,
-    log: Annotated[Path, typer.Argument(help="Log to replay.", metavar="LOG")],
-    result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
+    log: Annotated[Path, Argument(help="Log to replay.", metavar="LOG")],
+    result: Annotated[Path | None, Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
     wrench_delay: Annotated[
-        float | None, typer.Option(parser=options.seconds, metavar="MS", help=DELAY_HELP)
+        float | None, Option(parser=options.seconds, metavar="MS", help=DELAY_HELP)
     ] = None,
     cutoff: Annotated[
         float | None,
-        typer.Option(
+        Option(
             metavar="HZ",
             help="Cut-off of the filters before the regressions, in Hz. If left out: the result's, or 5.",
         ),
     ] = None,
     write_model: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             metavar="FILE", help="Also write the file that a controller in C++ constructs its estimator from."
         ),
     ] = None,
     live: Annotated[
-        bool, typer.Option("--live", help="Also show it in a browser, at the pace at which it was recorded.")
+        bool, Option("--live", help="Also show it in a browser, at the pace at which it was recorded.")
     ] = False,
     plot: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="Also draw deflections, stiffness and damping over time: FILE.png, .svg or .pdf.",
             metavar="FILE",
         ),
     ] = None,
     port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port of the --live page, which only this machine can open.")
+        int,
+        Option(
+            metavar="N", min=0, max=65535, help="Port of the --live page, which only this machine can open."
+        ),
     ] = 8080,
     memory: options.Memory = None,
     json: options.Json = False,
@@ -115,12 +117,8 @@ def run(
     if plot is not None and kind is not None:
         _draw(replay, plot, kind)
     if json:
-        content = {
-            "parameters": [asdict(row) for row in rows],
-            "latency_us": replay.latency_us,
-            "samples": len(motion),
-        }
-        print(dump_json(content), end="")
+        told = [asdict(row) for row in rows]
+        print_json(parameters=told, latency_us=replay.latency_us, samples=len(motion))
     elif not quiet:
         print_notes(console(), notes)
         _print(replay, rows)
@@ -151,7 +149,7 @@ def _so_far(replay: Replay) -> Table:
             for found in (one.stiffness, one.damping):
                 known = found.half_width < UNKNOWN * abs(found.value)
                 value, half = (found.value, found.half_width) if known else (None, None)
-                numbers += [number(value), f"± {_plain(half)}"]
+                numbers += [number(value), _plain(half)]
             rows.append((foot, axis, *numbers, said if axis == "pitch" else ""))
     return table(f"At {replay.time[-1]:.1f} s", heads, rows)
 
@@ -188,15 +186,7 @@ def _show(robot: RobotModel, replay: Replay, port: int) -> None:
 def _known(rows: Sequence[Parameter], title: str) -> Table:
     heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict")
     cells = [
-        (
-            row.foot,
-            row.axis,
-            row.name,
-            number(row.value),
-            f"± {_plain(row.half_width)}",
-            row.unit,
-            row.verdict,
-        )
+        (row.foot, row.axis, row.name, number(row.value), _plain(row.half_width), row.unit, row.verdict)
         for row in rows
     ]
     return table(title, heads, cells, [VERDICT_STYLE[row.verdict] for row in rows])
@@ -204,26 +194,19 @@ def _known(rows: Sequence[Parameter], title: str) -> Table:
 
 def _plain(half: float | None) -> str:
     """A half width to two digits, without a power of ten: it stands beside its value."""
-    return "–" if half is None else f"{float(f'{half:.2g}'):.15g}"
+    return "–" if half is None else f"± {float(f'{half:.2g}'):.15g}"
 
 
 def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
     out = console()
     out.print(_known(rows, "At the end of the log"))
-    for verdict, names, rest in advised(rows):
-        out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
-    through = (
-        "foot",
-        "stands %",
-        *(f"{axis} mrad rms" for axis in ("pitch", "roll")),
-        "flags, % of the samples",
-    )
+    print_advice(out, rows)
+    through = ("foot", "stands %", "pitch mrad rms", "roll mrad rms", "flags, % of the samples")
     out.print(table("Through the log", through, [_foot_row(replay, foot) for foot in replay.feet]))
     out.print(f"“{ONLINE}” in plantar's documentation says what each flag means.")
     took = replay.latency_us
-    out.print(
-        f"a step: median {took['median']:.1f} µs, 99.9 % {took['p999']:.1f} µs, longest {took['max']:.1f} µs"
-    )
+    median, p999, longest = (f"{took[key]:.1f} µs" for key in ("median", "p999", "max"))
+    out.print(f"a step: median {median}, 99.9 % {p999}, longest {longest}")
 
 
 def _foot_row(replay: Replay, foot: str) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from plantar.report import write_dynamics_report, write_feet_report
 from plantar.results.feet import FEET_SCHEMA
@@ -14,13 +14,11 @@ from plantar.results.io import read_result
 
 def run(
     result: Annotated[
-        Path, typer.Argument(help="A result.json with its residuals beside it.", metavar="RESULT.json")
+        Path, Argument(help="A result.json with its residuals beside it.", metavar="RESULT.json")
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", metavar="FILE", help="The page to write; report.html beside the result if left out."
-        ),
+        Option("--out", metavar="FILE", help="The page to write; report.html beside the result if left out."),
     ] = None,
 ) -> None:
     """Write the result's report.html again, from its result.json and residuals.

@@ -6,25 +6,24 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+from typer import Argument, Option
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.terminal import console, end_progress, number, print_json, progress, table
 from plantar.logs.inputs import open_together
 from plantar.motions.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.results.feet_text import SYMBOLS
-from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
 
 def run(
     robot: options.Robot,
-    logs: Annotated[list[Path], typer.Argument(help="Logs to choose from.", metavar="LOG...")],
+    logs: Annotated[list[Path], Argument(help="Logs to choose from.", metavar="LOG...")],
     compare: Annotated[
         str,
-        typer.Option(metavar="MOTION,...", help="Motions to compare with the best set, separated by commas."),
+        Option(metavar="MOTION,...", help="Motions to compare with the best set, separated by commas."),
     ] = "",
-    largest: Annotated[int, typer.Option(help="Largest number of logs in a set.", min=1, max=20)] = 6,
+    largest: Annotated[int, Option(metavar="N", help="Largest number of logs in a set.", min=1, max=20)] = 6,
     memory: options.Memory = None,
     json: options.Json = False,
     quiet: options.Quiet = False,
@@ -39,7 +38,7 @@ def run(
     found = select_motions(known, open_together(logs, known, memory), named, largest, progress=step)
     end_progress(quiet)
     if json:
-        print(dump_json({"schema": "plantar.selection/1", **_plain(found)}), end="")
+        print_json(schema="plantar.selection/1", **_plain(found))
         return
     screen = console()
     screen.print(_table("Each log alone: the expected 95 % half width [% of the value]", found.alone))
@@ -59,7 +58,7 @@ def _table(title: str, choices: Any) -> object:
          number(choice.usual, 3), number(choice.condition_number, 3))
         for choice in choices
     ]  # fmt: skip
-    return table(title, ("logs", *heads, "usual", "condition"), rows)
+    return table(title, ("logs", *heads, "mean", "condition"), rows)
 
 
 def _percent(value: float) -> str:

@@ -6,18 +6,17 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, number, table
+from plantar.cli.console.terminal import console, number, print_json, table
 from plantar.results.feet import FeetResult
-from plantar.results.io import dump_json
 from plantar.results.reference import neighbours
 
 
 def run(
     result: Annotated[
-        Path | None, typer.Argument(help="A result of `identify feet` to place.", metavar="RESULT.json")
+        Path | None, Argument(help="A result of `identify feet` to place.", metavar="RESULT.json")
     ] = None,
     json: options.Json = False,
 ) -> None:
@@ -28,7 +27,7 @@ def run(
     lines = neighbours(() if result is None else FeetResult.load(result, residuals=False).parameters)
     if json:
         rows = [asdict(line.reference) | {"own": line.own} for line in lines]
-        print(dump_json({"schema": "plantar.reference/1", "references": rows}), end="")
+        print_json(schema="plantar.reference/1", references=rows)
         return
     heads = ("robot", "pitch [N·m/rad]", "roll [N·m/rad]", "z [N/m]", "C [N·m·s/rad]", "", "source")
     cells = [

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Argument, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
@@ -32,7 +32,7 @@ PRESET_HELP = (
 def run(
     motion: Annotated[
         str,
-        typer.Argument(
+        Argument(
             help="A motion's name, or a table of joint positions of your own (CSV, Parquet); several separated by "
             "commas; 'campaign', the paper's fourteen; 'demo', those of `plantar demo`; or 'fleet'.",
             metavar="MOTION",
@@ -40,45 +40,47 @@ def run(
     ],
     out: Annotated[
         Path,
-        typer.Option(metavar="DIR", help="Folder for the robot file, the logs and the truth beside them."),
+        Option(metavar="DIR", help="Folder for the robot file, the logs and the truth beside them."),
     ],
-    preset: Annotated[str | None, typer.Option(metavar="PRESET", help=PRESET_HELP)] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the sensors' noise, biases and zeros.", min=0)] = 0,
+    preset: Annotated[str | None, Option(metavar="PRESET", help=PRESET_HELP)] = None,
+    seed: Annotated[
+        int, Option(metavar="N", help="Seed of the sensors' noise, biases and zeros.", min=0)
+    ] = 0,
     robot: Annotated[
         Path | None,
-        typer.Option(metavar="ROBOT.yaml", help="Robot file of a biped; the HRP-2-like one if left out."),
+        Option(metavar="ROBOT.yaml", help="Robot file of a biped; the HRP-2-like one if left out."),
     ] = None,
-    bush: Annotated[str | None, typer.Option(metavar="K,C,...", help=BUSH_HELP)] = None,
+    bush: Annotated[str | None, Option(metavar="K,C,...", help=BUSH_HELP)] = None,
     sway: Annotated[
         float | None,
-        typer.Option(
+        Option(
             help="How far the chest moves in tilts and where the operator leads it, in m; as in the paper if left out.",
             metavar="M",
         ),
     ] = None,
     vertical: Annotated[
         float | None,
-        typer.Option(
+        Option(
             metavar="M",
             help="How far the chest goes down in Tilt4 to Tilt6 and Squat, in m; as in the paper if left out.",
         ),
     ] = None,
     apart: Annotated[
         float | None,
-        typer.Option(
+        Option(
             metavar="M",
             help="Distance between the soles, in m; that of the robot's usual posture if left out.",
         ),
     ] = None,
     period: Annotated[
         float | None,
-        typer.Option(
+        Option(
             metavar="S", help="Duration of a step of a walk, 0.6 to 6 s; as the walk's name says if left out."
         ),
     ] = None,
-    robots: Annotated[int, typer.Option(metavar="N", help="How many robots 'fleet' has.", min=1)] = 20,
+    robots: Annotated[int, Option(metavar="N", help="How many robots 'fleet' has.", min=1)] = 20,
     days: Annotated[
-        int, typer.Option(metavar="N", help="How many days 'fleet' has: one log per robot and day.", min=1)
+        int, Option(metavar="N", help="How many days 'fleet' has: one log per robot and day.", min=1)
     ] = 60,
     quiet: options.Quiet = False,
 ) -> None:
@@ -108,9 +110,10 @@ def run(
     if motion == FLEET:
         _fleet(out, robots, days, preset, seed, quiet)
         return
-    for option, size in (("--sway", sway), ("--vertical", vertical), ("--apart", apart)):
+    sizes = {"sway": sway, "vertical": vertical, "apart": apart}
+    for option, size in sizes.items():
         if size is not None and not 0 < size < LONGEST:
-            raise PlantarError(f"{option} is no length", value=size, valid=f"0 to {LONGEST:g} m")
+            raise PlantarError(f"--{option} is no length", value=size, valid=f"0 to {LONGEST:g} m")
     chosen = DEFAULT if preset is None else preset
     names = list({"campaign": CAMPAIGN, "demo": DEMO}.get(motion, tuple(motion.split(","))))
     bushes = PAPER if bush is None else _bushes(bush)
@@ -120,32 +123,15 @@ def run(
         raise PlantarError(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll")
     report = _reporter(len(names), progress(quiet))
     motions = [own_plan(name, model or hrp2.robot()) if Path(name).suffix else name for name in names]
-    (recordings,) = play_all(
-        motions,
-        model,
-        bushes,
-        chosen,
-        [seed],
-        report,
-        sway=sway,
-        vertical=vertical,
-        apart=apart,
-        period=period,
-    )
+    (recordings,) = play_all(motions, model, bushes, chosen, [seed], report, **sizes, period=period)
     end_progress(quiet)
     robot_file = write_campaign(out, recordings, model, chosen)
     rows = [
-        (
-            recording.name,
-            number(recording.log.duration),
-            f"{len(recording.log)}",
-            f"{out / recording.name}.parquet",
-        )
-        for recording in recordings
+        (one.name, number(one.log.duration), f"{len(one.log)}", f"{out / one.name}.parquet")
+        for one in recordings
     ]
-    console().print(
-        table(f"{chosen}, seed {seed}; robot file {robot_file}", ("motion", "s", "samples", "log"), rows)
-    )
+    title = f"{chosen}, seed {seed}; robot file {robot_file}"
+    console().print(table(title, ("motion", "s", "samples", "log"), rows))
 
 
 def _fleet(out: Path, robots: int, days: int, preset: str | None, seed: int, quiet: bool) -> None:

@@ -68,9 +68,8 @@ def _information(reach: Reach, bent: Array, rate: Array) -> Array:
     known = np.outer(reach.stiffness, [1.0, 0.5])
     whole[..., [2, 3], [2, 3]] += 1.0 / known[:, None, None] ** 2
     across = whole[..., :2, 2:]
-    return np.asarray(
-        whole[..., :2, :2] - across @ np.linalg.solve(whole[..., 2:, 2:], np.swapaxes(across, -1, -2))
-    )
+    shared = np.linalg.solve(whole[..., 2:, 2:], np.swapaxes(across, -1, -2))
+    return np.asarray(whole[..., :2, :2] - across @ shared)
 
 
 def half_widths(

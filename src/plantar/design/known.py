@@ -51,11 +51,9 @@ class Known:
             if row.verdict == "usable":
                 own[terms.index(row.name)] = (high - low) / 2 / NORMAL95
             if row.name == terms[0]:
-                ends = (
-                    (low, high)
-                    if row.verdict == "usable"
-                    else _spring_alone(row, (low, high), result, element)
-                )
+                ends = low, high
+                if row.verdict == "weak":
+                    ends = _spring_alone(row, ends, result, element)
                 reaches += [end for end in ends if end > 0]
         found = {term: of["usable"] or of["weak"] for term, of in values.items()}
         if not all(found.values()):

@@ -119,9 +119,8 @@ class Legs:
     def _bounded(self) -> list[tuple[int, float, float]]:
         """Of the legs' joints that have limits, the place in a configuration and both limits."""
         low, high = self.model.lowerPositionLimit, self.model.upperPositionLimit
-        places = [
-            joint.idx_q for joint in self.model.joints[2:] if joint.nq == 1 and joint.idx_v in self.columns
-        ]
+        single = (joint for joint in self.model.joints[2:] if joint.nq == 1)
+        places = [joint.idx_q for joint in single if joint.idx_v in self.columns]
         return [(place, low[place], high[place]) for place in places if low[place] < high[place]]
 
     def _bent(self, q: Array) -> Array:

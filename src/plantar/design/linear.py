@@ -44,9 +44,8 @@ class LinearRobot:
             steps[row] = [-SMALL, SMALL]
             before, after = (legs.follow(step[:, None])[0] for step in steps.T)
             change = np.array(pin.difference(model, before, after)) / (2 * SMALL)
-            ends = about(
-                planned_wrench(model, np.array([before, after]), *2 * (np.zeros((2, model.nv)),)), middle
-            )
+            still = np.zeros((2, model.nv))
+            ends = about(planned_wrench(model, np.array([before, after]), still, still), middle)
             pushed = about(planned_wrench(model, rest[None], still, change[None]), middle)[0]
             joints[row], held[row] = change, (ends[1] - ends[0]) / (2 * SMALL)
             moved[row] = pushed - weight

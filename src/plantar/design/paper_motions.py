@@ -69,11 +69,8 @@ def paper_motions(
             refused[name] = str(error)
     preset = preset_named(DEFAULT)
     world = preset.physics(dict.fromkeys(robot.feet, bush_of(told)), robot)
-    rollouts = roll_each(
-        [(plan, world) for plan in plans],
-        robot,
-        lambda name, share: progress(f"play {name} {100 * share:.0f} %"),
-    )
+    jobs = [(plan, world) for plan in plans]
+    rollouts = roll_each(jobs, robot, lambda name, share: progress(f"play {name} {100 * share:.0f} %"))
     logs, played = list[MotionLog](), dict[str, Plan]()
     for plan, rollout in zip(plans, rollouts, strict=True):
         if isinstance(rollout, MotionError):

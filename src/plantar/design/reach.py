@@ -59,12 +59,8 @@ class Reach:
         bushes: Sequence[Softness],
         element: Array | None = None,
     ) -> None:
-        self.lines, self.time, self.bushes, self.feet = (
-            lines,
-            lines.time(RATE),
-            tuple(bushes),
-            tuple(legs.bushes),
-        )
+        self.lines, self.time = lines, lines.time(RATE)
+        self.bushes, self.feet = tuple(bushes), tuple(legs.bushes)
         fine, period = lines.basis(lines.time(FINER * RATE)), 1 / (FINER * RATE)
         quick = np.gradient(fine, period, axis=-1)
         asked = robot.wrench(fine, np.gradient(quick, period, axis=-1))
@@ -109,9 +105,8 @@ class Reach:
         self._edges = [edges(legs, foot) for foot in self.feet]
         self._squeezed = internal_forces(legs)
         height = robot.pendulum.height
-        largest = [
-            LARGEST[channel] * (height if channel.startswith("centre") else 1.0) for channel in CHANNELS
-        ]
+        scales = (height if channel.startswith("centre") else 1.0 for channel in CHANNELS)
+        largest = [LARGEST[channel] * scale for channel, scale in zip(CHANNELS, scales, strict=True)]
         bent = self.deflection.reshape(lines.size, -1, self.time.size)
         load = self.load.reshape(lines.size, -1, self.time.size)
         own = [(self._basis, np.array(largest), np.array(largest)), *self._joints(legs, robot)]
@@ -231,9 +226,8 @@ class Reach:
     def close(self, coefficients: Array, above: float) -> Reach:
         """The same with those limits alone of which a motion takes up more than a share: few of them, and quick."""
         found = copy(self)
-        series = np.flatnonzero(
-            np.max([side.max(axis=1) for side in self._shares(coefficients)], axis=0) > above
-        )
+        shares = np.max([side.max(axis=1) for side in self._shares(coefficients)], axis=0)
+        series = np.flatnonzero(shares > above)
         found._watched = np.ascontiguousarray(self._watched[:, series])
         found._low, found._high, found._group, found._slips = (
             one[series] for one in (self._low, self._high, self._group, self._slips)

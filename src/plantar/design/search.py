@@ -147,12 +147,8 @@ class _Climb:
             self._slope = np.concatenate(over_cores(self._value, parts)) - self.least
         tried, (rows, left) = self.best, self._close.near(self.best)
         for _ in range(CUTS):
-            found = linprog(
-                self._slope / SMALL,
-                A_ub=rows * self._units,
-                b_ub=np.maximum(left, 0.0),
-                bounds=(-self.far, self.far),
-            )
+            box, room = (-self.far, self.far), np.maximum(left, 0.0)
+            found = linprog(self._slope / SMALL, A_ub=rows * self._units, b_ub=room, bounds=box)
             if not found.success:
                 break
             tried = self.best + self._units * found.x

@@ -156,19 +156,8 @@ def design_motion(
     )
     coefficients, trajectory, rehearsals, pairs = until_it_holds(motion, legs, told, progress)
     return Design(
-        settings,
-        robot,
-        told,
-        factors,
-        least,
-        legs,
-        lines,
-        coefficients,
-        trajectory,
-        tuple(rehearsals),
-        pairs,
-        known,
-    )
+        settings, robot, told, factors, least, legs, lines, coefficients, trajectory, tuple(rehearsals), pairs, known
+    )  # fmt: skip
 
 
 def _stances(robot: RobotModel) -> list[tuple[Legs, LinearRobot]]:

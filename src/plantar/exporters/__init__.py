@@ -25,11 +25,11 @@ TARGETS: dict[str, tuple[str, str]] = {
     "mujoco-contact": ("contact.target", "MuJoCo model (MJCF): points under each foot with fitted solref"),
     "drake-contact": (
         "contact.drake",
-        "SDFormat for Drake: points under each foot with stiffness and damping",
+        "SDFormat for Drake: points with stiffness and damping under each foot",
     ),
     "bullet-contact": (
         "contact.bullet",
-        "URDF for Bullet: points under each foot with stiffness and damping",
+        "URDF for Bullet: points with stiffness and damping under each foot",
     ),
     "physx-contact": ("contact.physx", "USD layer over your stage: points with PhysX' compliant contact"),
     "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),

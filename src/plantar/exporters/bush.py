@@ -15,18 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from plantar.conventions import (
-    AXES,
-    Array,
-    Axis,
-    rotation_from_rpy,
-)
+from plantar.conventions import AXES, Array, Axis, rotation_from_rpy
 from plantar.errors import ExportError
 from plantar.exporters.source import robot_model, robot_urdf
 from plantar.exporters.spring import Spring, spring_of
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.notes import Note, Notes
 
+CHAIN: tuple[Axis, ...] = ("z", "pitch", "roll")  # from the ankle to the sole
 SIDES = {"left": "LLEG", "right": "RLEG"}
 
 
@@ -131,20 +127,14 @@ def feet_of_result(
     )
     feet = []
     for name in names:
-        springs = tuple(
-            spring
-            for axis in ("z", "pitch", "roll")
-            if (
-                spring := spring_of(
-                    result, rows, name, axis, with_offset, notes, hysteresis=hysteresis, swing=swing
-                )
-            )
-            is not None
+        found = (
+            spring_of(result, rows, name, axis, with_offset, notes, hysteresis=hysteresis, swing=swing)
+            for axis in CHAIN
         )
+        springs = tuple(spring for spring in found if spring is not None)
         if not {"pitch", "roll"} & {spring.axis for spring in springs}:
-            raise ExportError(
-                f"foot '{name}' has no stiffness in pitch or roll", valid="a result of identify feet"
-            )
+            message = f"foot '{name}' has no stiffness in pitch or roll"
+            raise ExportError(message, valid="a result of identify feet")
         for axis in AXES:
             if axis not in {spring.axis for spring in springs}:
                 notes.info("export_rigid", f"{name} {axis}: not identified, so rigid in the export")
@@ -170,7 +160,6 @@ def _geometry(entry: Mapping[str, Any], result: Mapping[str, Any], base: Path) -
         outline = np.array(entry["sole"]["polygon"], float)
         corners = np.column_stack([outline, np.zeros(len(outline))]) @ frames[1][0].T + frames[1][1]
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
-        raise ExportError(
-            f"robot_model: a foot's entry is broken: {error}", valid="ankle, bush, sole"
-        ) from error
+        message = f"robot_model: a foot's entry is broken: {error}"
+        raise ExportError(message, valid="ankle, bush, sole") from error
     return frames[0][1], frames[0][0], corners

@@ -52,18 +52,16 @@ def head(
 def joints_note(feet: Iterable[FootBush]) -> Note:
     """Which joints of the written model are the bushes."""
     feet = list(feet)
-    told = [
-        f"{foot.name} foot {', '.join(foot.joint(spring.axis) for spring in foot.springs)}" for foot in feet
-    ]
+    joints = {foot.name: [foot.joint(spring.axis) for spring in foot.springs] for foot in feet}
+    told = [f"{name} foot {', '.join(own)}" for name, own in joints.items()]
     axes = dict.fromkeys(spring.axis for foot in feet for spring in foot.springs)
     signs = ", ".join(MOTION[axis] for axis in axes)
     return Note("export_joints", "info", f"the bushes are these joints: {'; '.join(told)} ({signs})")
 
 
 def moved_note(foot: FootBush, moved: Iterable[str]) -> Note:
-    return Note(
-        "export_moved", "info", f"{foot.name}: moved from '{foot.ankle}' to the sole: {', '.join(moved)}"
-    )
+    text = f"{foot.name}: moved from '{foot.ankle}' to the sole: {', '.join(moved)}"
+    return Note("export_moved", "info", text)
 
 
 def updated_note(foot: FootBush, joints: Container[str]) -> Note:

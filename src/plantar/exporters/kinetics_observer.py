@@ -83,11 +83,8 @@ def write(job: Job, notes: Notes) -> str:
         values = []
         for axis in axes:
             found = [spring for foot in job.feet if axis and (spring := foot.spring(axis)) is not None]
-            values.append(
-                float(np.mean([getattr(spring, attribute) for spring in found])) if found else default
-            )
+            known = [getattr(spring, attribute) for spring in found]
+            values.append(float(np.mean(known)) if known else default)
         body += f"{key}: [{', '.join(f'{value:.9g}' for value in values)}]\n"
-    return (
-        "".join(f"# {line}\n" for line in job.head("the Kinetics Observer", notes, rests=False, joints=False))
-        + body
-    )
+    lines = job.head("the Kinetics Observer", notes, rests=False, joints=False)
+    return "".join(f"# {line}\n" for line in lines) + body

@@ -89,10 +89,8 @@ def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: Notes) -> list[Nu
     """Stiffness, damping and slip of each axis as `mjcf` writes them, with the identified relative deviation."""
     numbers = []
     for spring in foot.springs:
-        values = [
-            ("stiffness", spring.stiffness, spring.units[0]),
-            ("damping", spring.damping, spring.units[1]),
-        ]
+        k, c, _ = spring.units
+        values = [("stiffness", spring.stiffness, k), ("damping", spring.damping, c)]
         if spring.slip is not None:
             values += [("slip_torque", spring.slip.torque, "N.m"), ("slip_angle", spring.slip.angle, "rad")]
             text = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -28,7 +28,12 @@ def reaches_sole(points: Array, foot: FootBush) -> bool:
 
 
 def taken_off(
-    link: ET.Element, place: Array, points: Callable[[ET.Element], Array | None], foot: FootBush, notes: Notes
+    link: ET.Element,
+    place: Array,
+    points: Callable[[ET.Element], Array | None],
+    foot: FootBush,
+    notes: Notes,
+    tags: Sequence[str] = ("collision", "visual"),
 ) -> list[tuple[str, ET.Element]]:
     """A link's shapes that reach the sole, taken off it, each with what it is called.
 
@@ -36,7 +41,7 @@ def taken_off(
     collision mesh that cannot be read goes with the sole, with a note.
     """
     taken = []
-    for tag in ("collision", "visual"):
+    for tag in tags:
         for index, shape in enumerate(link.findall(tag)):
             corners = points(shape)
             if corners is None and tag == "collision":

@@ -57,6 +57,12 @@ def to_text(root: ET.Element, head: Iterable[str]) -> str:
     return f'<?xml version="1.0"?>\n<!--\n{lines}\n-->\n{ET.tostring(root, encoding="unicode")}\n'
 
 
+def child_of(parent: ET.Element, tag: str) -> ET.Element:
+    """The first child of that tag, made where there is none."""
+    found = parent.find(tag)
+    return ET.SubElement(parent, tag) if found is None else found
+
+
 def numbers(values: Sequence[float] | Array) -> str:
     """Numbers as they stand in XML attributes: all digits that matter, no noise below 1e-12."""
     array = np.asarray(values, float).ravel()

@@ -122,9 +122,9 @@ def _turned(stance: Stance, sides: StanceSides) -> Iterator[Finding]:
     """An IMU that is turned about the vertical: its tilts are not those that the ground's force shows."""
     turn, spread = sides.turn
     if abs(turn) > max(TURNED, 3 * spread):
-        text = f"columns 'imu.{stance.imu.name}.*': tilts another way than the ground's force in the robot, turned by "
-        valid = f"valid: within {np.degrees(TURNED):.0f} deg; check the IMU's rpy"
-        yield Finding("imu_turned", f"{text}{np.degrees(turn):.0f} deg about the vertical ({valid})")
+        text = f"columns 'imu.{stance.imu.name}.*': the tilts and the ground's force say directions that are "
+        valid = f"valid: within {np.degrees(TURNED):.0f} deg; check the IMU's link and rpy in the robot file"
+        yield Finding("imu_turned", f"{text}{np.degrees(turn):.0f} deg apart about the vertical ({valid})")
 
 
 def _turned_wrench(stance: Stance, sides: StanceSides) -> _TurnedWrench | None:

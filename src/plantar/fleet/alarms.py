@@ -45,21 +45,19 @@ def alarm_of(series: Series, days: Days, change: Change) -> Alarm:
     key = series.key
     what = f"{key.foot} {key.axis} {key.name} of {series.unit}"
     way = "up" if percent > 0 else "down"
-    sure = (
-        f" ({abs(low):.1f} to {abs(high):.1f} %)" if np.isfinite([low, high]).all() and low * high > 0 else ""
-    )
-    if abs(low) > abs(high):
-        sure = sure and f" ({abs(high):.1f} to {abs(low):.1f} %)"
+    least, most = sorted((abs(low), abs(high)))
+    known = bool(np.isfinite([low, high]).all())
+    bounds: tuple[float | None, float | None] = (low, high) if known else (None, None)
+    sure = f" ({least:.1f} to {most:.1f} %)" if known and low * high > 0 else ""
     text = {
         "step": f"{what} went {way} by {abs(percent):.1f} %{sure} on {since}, seen on {seen}",
         "trend": f"{what} goes {way} by {abs(percent):.2g} % a month since about {since}, seen on {seen}",
         "outlier": f"{what} is {abs(percent):.1f} % {'above' if percent > 0 else 'below'} the other days on {since}",
     }[change.kind]
     groups = days.groups[change.first] if change.kind == "outlier" else ()
-    bounds = (low, high) if np.isfinite([low, high]).all() else (None, None)
     return Alarm(
-        series.unit, key.foot, key.axis, key.name, change.kind, since, seen, percent, bounds[0], bounds[1], groups, text
-    )  # fmt: skip
+        series.unit, key.foot, key.axis, key.name, change.kind, since, seen, percent, *bounds, groups, text
+    )
 
 
 def advice_for(alarm: Alarm, others: Sequence[Alarm]) -> str:

@@ -162,12 +162,10 @@ def _time(text: str, line: int, file: Path) -> datetime | None:
 def _group(name: str, rows: Sequence[Row], file: Path) -> Group:
     first = rows[0]
     for row in rows:
-        if row.robot != first.robot:
-            message = f"line {row.line} gives group '{name}' another robot than line {first.line}"
-            raise PlantarError(message, path=file, column="robot", valid="one robot a group")
-        if row.unit != first.unit:
-            message = f"line {row.line} gives group '{name}' another unit than line {first.line}"
-            raise PlantarError(message, path=file, column="unit", valid="one unit a group")
+        for what, same in (("robot", row.robot == first.robot), ("unit", row.unit == first.unit)):
+            if not same:
+                message = f"line {row.line} gives group '{name}' another {what} than line {first.line}"
+                raise PlantarError(message, path=file, column=what, valid=f"one {what} a group")
     logs = tuple(row.log for row in rows)
     places = [log.place for log in logs]
     twice = next((row for k, row in enumerate(rows) if row.log.place in places[:k]), None)

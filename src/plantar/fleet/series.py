@@ -79,9 +79,8 @@ def series_of(results: pa.Table) -> list[Series]:
     if not len(table):
         return []
     codes, names = zip(*(_coded(table[name]) for name in KEY), strict=True)
-    times = (
-        np.asarray(table["time"].cast(pa.int64()).cast(pa.float64(), safe=False).to_numpy()) / MICROSECONDS
-    )
+    whole = table["time"].cast(pa.int64()).cast(pa.float64(), safe=False)
+    times = np.asarray(whole.to_numpy()) / MICROSECONDS
     values = table["value"].to_numpy()
     stds = pc.fill_null(table["std"], 0.0).to_numpy() / values
     group, group_names = _coded(table["group"])

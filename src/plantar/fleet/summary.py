@@ -132,11 +132,10 @@ def summary_of(results: pa.Table, failures: pa.Table, false_alarms: float = FALS
         if one.key.name == WATCHED
         for change in history.changes
     ]
-    groups = len(
-        pc.unique(pa.chunked_array([*results["group"].chunks, *failures["group"].chunks], pa.string()))
-    )
+    names = pa.chunked_array([*results["group"].chunks, *failures["group"].chunks], pa.string())
     return FleetSummary(
-        groups, false_alarms, effects, levels, _advised(alarms), reasons_of(failures), tuple(series), tuple(days)
+        len(pc.unique(names)), false_alarms, effects, levels,
+        _advised(alarms), reasons_of(failures), tuple(series), tuple(days),
     )  # fmt: skip
 
 
@@ -181,9 +180,8 @@ def _since_step(series: Series, days: Days, history: History) -> Series:
         return series
     kept = ~(series.times < days.day[history.start])
     groups = tuple(group for group, keep in zip(series.groups, kept, strict=True) if keep)
-    return replace(
-        series, groups=groups, times=series.times[kept], values=series.values[kept], stds=series.stds[kept]
-    )
+    times, values, stds = (part[kept] for part in (series.times, series.values, series.stds))
+    return replace(series, groups=groups, times=times, values=values, stds=stds)
 
 
 def _by_key(series: Sequence[Series]) -> dict[SeriesKey, list[Series]]:
@@ -209,23 +207,15 @@ def _level(series: Series, days: Days, history: History, mean: Mean) -> Level:
     sure = _with_shared(mean, series)
     recent = _since_step(series, days, history)
     line, key = history.trend, series.key
+    bounds = (mean.value, mean.low, mean.high, mean.value - sure, mean.value + sure)
+    value, low, high, sure_low, sure_high = (float(np.exp(bound)) for bound in bounds)
     return Level(
-        unit=series.unit,
-        foot=key.foot,
-        axis=key.axis,
-        name=key.name,
-        unit_of_value=key.unit_of_value,
-        value=float(np.exp(mean.value)),
-        low=float(np.exp(mean.low)),
-        high=float(np.exp(mean.high)),
-        sure_low=float(np.exp(mean.value - sure)),
-        sure_high=float(np.exp(mean.value + sure)),
-        recordings=len(recent.values),
-        since=days.date(history.start) if len(days.day) else None,
+        series.unit, key.foot, key.axis, key.name, key.unit_of_value, value, low, high, sure_low, sure_high,
+        recordings=len(recent.values), since=days.date(history.start) if len(days.day) else None,
         trend=None if line is None else percent_of(line.slope),
         trend_low=None if line is None else percent_of(line.low),
         trend_high=None if line is None else percent_of(line.high),
-    )
+    )  # fmt: skip
 
 
 def _with_shared(mean: Mean, series: Series) -> float:
@@ -242,6 +232,5 @@ def _advised(alarms: Sequence[Alarm]) -> tuple[Alarm, ...]:
         replace(alarm, advice=advice_for(alarm, [one for one in of_unit[alarm.unit] if one is not alarm]))
         for alarm in alarms
     ]
-    return tuple(
-        sorted(advised, key=lambda alarm: (alarm.kind == "outlier", -alarm.seen.toordinal(), alarm.text))
-    )
+    advised.sort(key=lambda alarm: (alarm.kind == "outlier", -alarm.seen.toordinal(), alarm.text))
+    return tuple(advised)

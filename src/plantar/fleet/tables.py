@@ -62,9 +62,8 @@ def write_tables(
     keys: of the finished units, by group. lost: by group, what failed without a unit.
     """
     finished = failed = failures = 0
-    results, broken, finished_groups = (
-        _Table(schema) for schema in (RESULTS_SCHEMA, FAILURES_SCHEMA, GROUPS_SCHEMA)
-    )
+    schemas = (RESULTS_SCHEMA, FAILURES_SCHEMA, GROUPS_SCHEMA)
+    results, broken, finished_groups = (_Table(schema) for schema in schemas)
     for start in range(0, len(groups), AT_ONCE):
         rows: list[dict[str, Any]] = []
         errors: list[dict[str, Any]] = []

@@ -166,10 +166,7 @@ def _opened(
 
 
 def _identified(
-    robot: RobotModel,
-    logs: list[tuple[_Fetched, MotionLog]],
-    settings: FeetSettings,
-    failures: list[Failure],
+    robot: RobotModel, logs: list[tuple[_Fetched, MotionLog]], settings: FeetSettings, failures: list[Failure]
 ) -> FeetResult | None:
     """The result of the logs without those that `identify_feet` refuses by name, which join the `failures`."""
     while any(one.log.role == "fit" for one, _ in logs):

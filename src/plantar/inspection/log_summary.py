@@ -120,9 +120,8 @@ def _range(name: str, log: MotionLog) -> ColumnRange:
     finite_values = values[np.isfinite(values)]
     if not finite_values.size:
         return ColumnRange(name, None, None, len(values))
-    return ColumnRange(
-        name, float(finite_values.min()), float(finite_values.max()), len(values) - finite_values.size
-    )
+    left_out = len(values) - finite_values.size
+    return ColumnRange(name, float(finite_values.min()), float(finite_values.max()), left_out)
 
 
 def _foot(recording: Recording, foot: str) -> FootSummary:

@@ -183,9 +183,8 @@ def _same_recording(log: MotionLog, other: MotionLog) -> bool:
     clock, or with other columns beside the same force sensors: joints alone may do the same twice."""
     short, long = sorted((log, other), key=len)
     shared = sorted(short.columns.keys() & long.columns.keys())
-    measured = short.columns.keys() == long.columns.keys() or any(
-        name.startswith("wrench.") for name in shared
-    )
+    forces = any(name.startswith("wrench.") for name in shared)
+    measured = forces or short.columns.keys() == long.columns.keys()
     if not shared or not len(short) or not measured:
         return False
     probes = np.linspace(0, len(short) - 1, PROBES).astype(int)

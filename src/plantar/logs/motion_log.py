@@ -190,9 +190,8 @@ class MotionLog:
 
     def joint_notes(self, robot: RobotModel) -> tuple[Note, ...]:
         """What the log's joints and the URDF's do not have in common."""
-        recorded = {
-            name.split(".", 1)[1].rsplit(".", 1)[0] for name in self.columns if name.startswith("joint.")
-        }
+        joints = (name for name in self.columns if name.startswith("joint."))
+        recorded = {name.split(".", 1)[1].rsplit(".", 1)[0] for name in joints}
         with_position = {name for name in recorded if self.has(f"joint.{name}.position")}
         missing = [name for name in robot.joint_names if name not in with_position]
         unknown = sorted(recorded - set(robot.joint_names))
@@ -210,9 +209,8 @@ class MotionLog:
     def without_empty_joints(self) -> MotionLog:
         """The same without positions of joints that never hold a value: these were not recorded, and would empty every
         row of what follows from all joints."""
-        positions = [
-            name for name in self.columns if name.startswith("joint.") and name.endswith(".position")
-        ]
+        joints = (name for name in self.columns if name.startswith("joint."))
+        positions = [name for name in joints if name.endswith(".position")]
         empty = [name for name in positions if np.isnan(self.columns[name]).all()]
         if not empty:
             return self

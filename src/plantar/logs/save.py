@@ -17,6 +17,7 @@ from plantar.errors import LogError
 from plantar.files import atomic_write
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Bytes, layout_of
+from plantar.logs.readers.ros.topics import Stamps
 from plantar.logs.save_ros import write_mcap
 from plantar.notes import Note
 
@@ -63,9 +64,8 @@ def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[N
     if outside.any():
         first = float(log.time[outside][0])
         raise LogError("lies outside what a ROS stamp can hold", path=log.source, time=first)
-    topics = [
-        (topic, kind.replace("/", "/msg/"), rows) for topic, kind, rows in _messages(log, stamps, frames)
-    ]
+    made = _messages(log, stamps, frames)
+    topics = [(topic, kind.replace("/", "/msg/"), rows) for topic, kind, rows in made]
     write_mcap(path, topics, stamps.tolist())
     lost = sum(name.startswith("joint.") and name.endswith(".acceleration") for name in log.columns)
     if not lost:
@@ -73,9 +73,7 @@ def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[N
     return (Note("columns_lost", "warning", f"JointState holds no accelerations: {lost} columns left out"),)
 
 
-def _messages(
-    log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]], frames: Mapping[str, str]
-) -> Iterable[tuple[str, str, Bytes]]:
+def _messages(log: MotionLog, stamps: Stamps, frames: Mapping[str, str]) -> Iterable[tuple[str, str, Bytes]]:
     """Topic, type and serialised messages (N, size) of every joint group, IMU and wrench of a log."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for joint in _names(log, "joint."):
@@ -88,11 +86,8 @@ def _messages(
         template = _Message("base").raw(body)
         for quantity in QUANTITIES:
             template.numbers(len(joints) if quantity in held else 0, counted=True)
-        yield (
-            "/joint_states" + (f"_{index + 1}" if index else ""),
-            JOINT_STATE,
-            _fill(JOINT_STATE, template, stamps, values),
-        )
+        topic = "/joint_states" + (f"_{index + 1}" if index else "")
+        yield topic, JOINT_STATE, _fill(JOINT_STATE, template, stamps, values)
     for imu in _names(log, "imu."):
         attitude = log.orientation(imu)
         values = {"orientation_covariance": np.zeros((len(log), 9))}
@@ -106,21 +101,15 @@ def _messages(
         yield f"/imu/{imu}", IMU, _fill(IMU, template, stamps, values)
     for sensor in _names(log, "wrench."):
         values = {quantity: _vector(log, f"wrench.{sensor}.{quantity}") for quantity in ("force", "torque")}
-        yield (
-            f"/wrench/{sensor}",
-            WRENCH,
-            _fill(WRENCH, _Message(frames.get(sensor, sensor)).numbers(3).numbers(3), stamps, values),
-        )
+        template = _Message(frames.get(sensor, sensor)).numbers(3).numbers(3)
+        yield f"/wrench/{sensor}", WRENCH, _fill(WRENCH, template, stamps, values)
 
 
 def _names(log: MotionLog, prefix: str) -> list[str]:
     """Joints or sensors in the log's order."""
     words = 1 if prefix == "joint." else 2
-    return list(
-        dict.fromkeys(
-            name.removeprefix(prefix).rsplit(".", words)[0] for name in log.columns if name.startswith(prefix)
-        )
-    )
+    own = (name.removeprefix(prefix) for name in log.columns if name.startswith(prefix))
+    return list(dict.fromkeys(name.rsplit(".", words)[0] for name in own))
 
 
 def _vector(log: MotionLog, stem: str) -> Array:
@@ -164,12 +153,7 @@ def _sequence(texts: list[bytes]) -> bytes:
     return body
 
 
-def _fill(
-    kind: str,
-    template: _Message,
-    stamps: np.ndarray[tuple[int], np.dtype[np.int64]],
-    values: dict[str, Array],
-) -> Bytes:
+def _fill(kind: str, template: _Message, stamps: Stamps, values: dict[str, Array]) -> Bytes:
     layout = layout_of(kind, "cdr", template.data)
     rows = np.tile(np.frombuffer(template.data, np.uint8), (len(stamps), 1))
     clock = np.column_stack([stamps // 1_000_000_000, stamps % 1_000_000_000]).astype("<u4")

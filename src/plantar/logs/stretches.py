@@ -19,10 +19,8 @@ LONGEST = 600.0  # s of one recording that are worked on: of a longer one those 
 STRETCH = 60.0  # s: it holds motions, and delays, which are told beside drifts of 20 s, are told in each
 CELL = 0.1  # s over which torques are averaged: what is faster is noise, or a sole that knocks
 BLANK = 0.1  # s at the end of a stretch that are emptied, so that nothing is filtered, bridged or read late beyond it
-PERIODS = (
-    1e-5,
-    1.0,
-)  # s: samples that follow each other otherwise are no log in seconds, which is told elsewhere
+# s: samples that follow each other otherwise are no log in seconds, which is told elsewhere
+PERIODS = (1e-5, 1.0)
 
 
 @dataclass(frozen=True)
@@ -89,9 +87,8 @@ def stretches_of(
         return None
     width, count = round(STRETCH / period), max(1, int(longest / STRETCH))
     starts = np.arange(0, len(time) - width + 1, width)  # what is left behind the last one is shorter
-    bending = [
-        name for name in names if name.startswith("wrench.") and name.endswith((".torque.x", ".torque.y"))
-    ]
+    wrenches = (name for name in names if name.startswith("wrench."))
+    bending = [name for name in wrenches if name.endswith((".torque.x", ".torque.y"))]
     torques = [name for name in bending if device_of(name).removeprefix("wrench.") in sensors] or bending
     told = np.array([_told(read(name), width, len(starts), max(1, round(CELL / period))) for name in torques])
     # The best of each column, then the second of each, and so on, each once.

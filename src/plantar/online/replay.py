@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -100,20 +101,14 @@ class Replay:
 def _vertical(foot: str, compliance: Estimated) -> Parameter:
     """The vertical stiffness: one over the slide's compliance, whose interval turns round."""
     value, half = compliance.value, compliance.half_width
+    row = partial(Parameter, foot, "z", "stiffness", STIFFNESS_UNIT["z"])
     if value > 0.0 and half <= TOLD * value:
-        return Parameter(
-            foot, "z", "stiffness", STIFFNESS_UNIT["z"], 1 / value, None, None, None, "weak", AS_TOLD
-        )
+        return row(1 / value, None, None, None, "weak", AS_TOLD)
     if half >= value:
-        return Parameter(
-            foot, "z", "stiffness", STIFFNESS_UNIT["z"], None, None, None, None, "unidentifiable", LEVEL, WALK
-        )
-    interval = (1 / (value + half), 1 / (value - half))
+        return row(None, None, None, None, "unidentifiable", LEVEL, WALK)
     reason = _too_wide("stiffness", half / value)
-    return Parameter(
-        foot, "z", "stiffness", STIFFNESS_UNIT["z"], 1 / value, compliance.std / value**2, interval, None,
-        "weak" if reason else "usable", reason,
-    )  # fmt: skip
+    interval = (1 / (value + half), 1 / (value - half))
+    return row(1 / value, compliance.std / value**2, interval, None, "weak" if reason else "usable", reason)
 
 
 def _too_wide(name: str, share: float) -> str:
@@ -130,16 +125,12 @@ def _weakened(row: Parameter, reason: str, advice: str) -> Parameter:
 
 def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:
     value, half = found.value, found.half_width
+    row = partial(Parameter, foot, axis, name, unit)
     if half >= UNKNOWN * abs(value):
-        reason = "nothing has excited it yet"
-        return Parameter(foot, axis, name, unit, None, None, None, None, "unidentifiable", reason)
+        return row(None, None, None, None, "unidentifiable", "nothing has excited it yet")
+    interval = (value - half, value + half)
     if value + half < 0.0:
-        return Parameter(
-            foot, axis, name, unit, value, found.std, (value - half, value + half), None, "unidentifiable", BELOW,
-            TELL_DELAY,
-        )  # fmt: skip
+        return row(value, found.std, interval, None, "unidentifiable", BELOW, TELL_DELAY)
     reason = _too_wide(name, half / abs(value))
     verdict: Verdict = "unidentifiable" if half >= abs(value) else "weak" if reason else "usable"
-    return Parameter(
-        foot, axis, name, unit, value, found.std, (value - half, value + half), None, verdict, reason
-    )
+    return row(value, found.std, interval, None, verdict, reason)

@@ -71,9 +71,8 @@ def _inertia_verdict(result: DynamicsResult) -> list[str]:
 def _joints_verdict(result: DynamicsResult) -> list[str]:
     sentences = []
     for verdict, lead in LEADS.items():
-        names = [
-            f"{row.joint} {row.name.replace('_', ' ')}" for row in result.parameters if row.verdict == verdict
-        ]
+        rows = (row for row in result.parameters if row.verdict == verdict)
+        names = [f"{row.joint} {row.name.replace('_', ' ')}" for row in rows]
         if names:
             shown = names if len(names) <= 8 else [*names[:7], f"{len(names) - 7} more"]
             sentences.append(f"{lead}: {listed(shown)}.")

@@ -37,7 +37,7 @@ def fleet_page(
         verdict=_verdict(summary, len(units), run or {}),
         alarms=summary.alarms[:SHOWN],
         more_alarms=max(0, len(summary.alarms) - SHOWN),
-        rate=number(summary.false_alarms, 3),
+        rate=f"{summary.false_alarms:.3g}",
         tables=[_robots(summary), _effects(summary), _trends(summary)],
         failures=_failures(summary),
         units=units,
@@ -46,9 +46,9 @@ def fleet_page(
 
 def _verdict(summary: FleetSummary, units: int, run: Mapping[str, Any]) -> list[str]:
     failed = sum(reason.count for reason in summary.failures)
-    sentences = [
-        f"{summary.groups} groups of {units} robots; {failed} failures; {len(summary.alarms)} alarms."
-    ]
+    counts = {"group": summary.groups, "robot": units, "failure": failed, "alarm": len(summary.alarms)}
+    groups, *rest = (f"{count} {what}{'' if count == 1 else 's'}" for what, count in counts.items())
+    sentences = [f"{groups} of {'; '.join(rest)}."]
     done, seconds = run.get("done"), run.get("seconds")
     if isinstance(done, int) and isinstance(seconds, float) and done and seconds > 0:
         reused = run.get("reused", 0)
@@ -77,12 +77,7 @@ def _robots(summary: FleetSummary) -> Table:
     columns = [Column("robot", numeric=False), Column("recordings")]
     columns += [Column(f"{foot} {axis}", unit(of)) for foot, axis, of in places]
     remark = "Since the last step; ± holds 95 % and allows for what all recordings of a robot share."
-    return Table.of(
-        "Stiffness of each robot",
-        [*columns, Column("alarms")],
-        rows,
-        remark=remark,
-    )
+    return Table.of("Stiffness of each robot", [*columns, Column("alarms")], rows, remark=remark)
 
 
 def _level_cell(level: Level | None) -> Cell:
@@ -110,9 +105,7 @@ def _effects(summary: FleetSummary) -> Table:
         Column("recordings"),
     ]
     columns += [Column(f"{who} differ", "%") for who in ("recordings of a day", "days of a robot", "robots")]
-    remark = (
-        "Random effects: the interval is for the mean of robots like these; a dash: nothing shows that part."
-    )
+    remark = "Random effects: the interval is for the mean of such robots; a dash: nothing shows that part."
     return Table.of("The fleet", columns, rows, remark=remark)
 
 
@@ -166,9 +159,7 @@ def _drawn(level: Level, series: Series, days: Days) -> dict[str, Any]:
         "time": _rounded(86400 * time, 0),
         "values": _rounded(values, 4 - int(np.ceil(np.log10(values.max())))),
         "since": 86400 * (level.since.toordinal() - EPOCH) if level.since else None,
-        "bounds": [
-            float(f"{bound:.5g}") for bound in (level.low, level.high, level.sure_low, level.sure_high)
-        ],
+        "bounds": [float(f"{one:.5g}") for one in (level.low, level.high, level.sure_low, level.sure_high)],
     }
 
 

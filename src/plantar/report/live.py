@@ -125,9 +125,8 @@ class _FootView:
         self._ankle.color = COLOURS[found.contact]
         self._pressure.position = tuple(self._aside + np.array([*found.centre_of_pressure, 0.0]))
         self._pressure.visible = found.contact is not Contact.AIR
-        flags = (
-            ", ".join(flag.name.lower() for flag in Flag if flag in found.flags and flag.name) or "nothing"
-        )
+        names = (flag.name.lower() for flag in Flag if flag in found.flags and flag.name)
+        flags = ", ".join(names) or "nothing"
         self._text.content = (
             f"{found.contact.name.lower()}, {found.load:.0f} N, deflections drawn {LARGER:.0f} times as large  \n"
             f"not to be trusted: {flags}"

@@ -67,15 +67,8 @@ def encode_motion(tracks: Sequence[Track], stride: int = 1) -> Payload:
             codes, zero, step = quantise(values[::stride])
             blocks.append(_planes(differences(codes), 2))
             channels.append({"key": key, "zero": zero, "step": step})
-        headers.append(
-            {
-                "foot": track.foot,
-                "n": int(time.size),
-                "t0": float(time[0]),
-                "tick": tick,
-                "channels": channels,
-            }
-        )
+        start = {"n": int(time.size), "t0": float(time[0]), "tick": tick}
+        headers.append({"foot": track.foot, **start, "channels": channels})
     data = base64.b64encode(zlib.compress(b"".join(blocks), EFFORT)).decode("ascii")
     return Payload({"tracks": headers, "supports": list(SUPPORTS)}, data)
 

@@ -179,10 +179,9 @@ def used_table(phases: Sequence[Phase]) -> Table:
     """How much of each log is used, and for what reasons the rest is not."""
     rows = []
     for one in used_shares(phases):
-        why = "; ".join(f"{reason} ({number(seconds, 3)} s)" for reason, seconds in one.left_out.items())
         share = percent(100 * one.used / one.seconds) if one.seconds > 0 else MISSING
         lengths = (number(one.seconds, 3), number(one.used, 3), share)
-        rows.append((one.motion, one.foot, *lengths, why or "nothing left out"))
+        rows.append((one.motion, one.foot, *lengths, one.reasons or "nothing left out"))
     columns = [*Column.words("motion", "foot"), Column("length", "s"), Column("used", "s"), Column("share")]
     columns += Column.words("left out because")
     return Table.of("What is used of each log", columns, rows)

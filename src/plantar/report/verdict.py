@@ -8,11 +8,11 @@ from typing import Final
 
 from plantar.report.content import Mark
 from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
+from plantar.results.feet_text import SYMBOLS
 from plantar.results.numbers import unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
 LEADS: Final = {"usable": "Trust", "weak": "Use with care", "unidentifiable": "Do not use"}
-SYMBOLS: Final[dict[str, str]] = {"stiffness": "K", "damping": "C"}
 BEYOND: Final = (
     "No interval holds for what these logs do not show: larger angles, another floor, colder or warmer rubber, a sole "
     "whose outline in the robot file is wrong."

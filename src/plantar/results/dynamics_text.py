@@ -34,9 +34,8 @@ def joint_cells(rows: Sequence[JointParameter]) -> list[tuple[str, ...]]:
     for row in rows:
         half = (row.interval95[1] - row.interval95[0]) / 2
         width = percent(100 * half / abs(row.value)) if row.value else ""
-        cells.append(
-            (row.joint, row.name, with_uncertainty(row.value, half), unit(row.unit), width, row.verdict)
-        )
+        value = with_uncertainty(row.value, half)
+        cells.append((row.joint, row.name, value, unit(row.unit), width, row.verdict))
     return cells
 
 

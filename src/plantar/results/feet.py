@@ -106,11 +106,9 @@ class FeetResult:
 
     def __str__(self) -> str:
         """Table 1 as text (± is half of the 95 % interval), what is not usable and why, prediction, warnings."""
-        why, todo = feet_text.reasons(self.parameters), feet_text.advice(self.parameters)
         scores = feet_text.prediction_cells(self.validation)
         lines = [self._title(), *text.columns([feet_text.HEADS, *feet_text.parameter_cells(self.parameters)])]
-        lines += ["Not usable as they are", *why] if why else []
-        lines += ["What to record next", *todo] if todo else []
+        lines += feet_text.weak_lines(self.parameters)
         if scores:
             lines += ["Prediction of the torque [N·m]", *text.columns([feet_text.PREDICTION_HEADS, *scores])]
         lines += [*feet_text.delay_line(self.sensor_delay), *text.warnings(self.notes)]
@@ -119,9 +117,9 @@ class FeetResult:
     def _repr_html_(self) -> str:
         """The same for a notebook."""
         table = text.html_table(self._title(), feet_text.HEADS, feet_text.parameter_cells(self.parameters))
-        why = [*feet_text.reasons(self.parameters), *feet_text.advice(self.parameters)]
         delay = feet_text.delay_line(self.sensor_delay)
-        return table + text.html_lines([*why, *delay, *text.warnings(self.notes)])
+        lines = [*feet_text.weak_lines(self.parameters), *delay, *text.warnings(self.notes)]
+        return table + text.html_lines(lines)
 
     def _title(self) -> str:
         counts = [sum(row.role == role for row in self.inputs) for role in ("fit", "validate")]

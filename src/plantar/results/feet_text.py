@@ -12,7 +12,7 @@ from plantar.results.numbers import MISSING, number, percent, unit, with_uncerta
 
 HEADS = ("foot", "axis", "parameter", "value", "unit", "±", "verdict")
 PREDICTION_HEADS = ("motions", "foot", "axis", "mean |error|", "offset alone", "")
-ASSUMPTION_HEADS = ("uncertainty", "std", "of", "found, ± for 95 %", "K by it", "C by it")
+ASSUMPTION_HEADS = ("uncertainty", "std", "of", "found, ± for 95 %", "K by it alone", "C by it alone")
 # How the keys of `uncertainty` are printed: factor and unit.
 PRINTED_IN = {
     "wrench_gain": (100.0, "%"),
@@ -59,27 +59,22 @@ def parameter_cells(rows: Sequence[Parameter]) -> list[tuple[str, ...]]:
     ]
 
 
-def reasons(rows: Sequence[Parameter]) -> list[str]:
-    """Why each number that is not usable is not; numbers with the same reason stand together."""
-    weak = [row for row in rows if row.verdict != "usable"]
+def weak_lines(rows: Sequence[Parameter]) -> list[str]:
+    """Why each number that is not usable is not, and what to record next; those with the same text stand together."""
+    why: dict[tuple[str, str], list[str]] = {}
+    todo: dict[str, list[str]] = {}
+    for row in rows:
+        if row.verdict != "usable":
+            name = f"{row.foot} {row.axis} {_term(row)}"
+            why.setdefault((row.verdict, row.reason), []).append(name)
+            if row.advice:
+                todo.setdefault(row.advice, []).append(name)
+    lines = [f"  {', '.join(names)} ({verdict}): {reason}" for (verdict, reason), names in why.items()]
+    advice = [f"  for {', '.join(names)}: {text}" for text, names in todo.items()]
     return [
-        f"  {', '.join(names)} ({verdict}): {reason}"
-        for (verdict, reason), names in _grouped(weak, [(row.verdict, row.reason) for row in weak]).items()
+        *(["Not usable as they are", *lines] if lines else []),
+        *(["What to record next", *advice] if advice else []),
     ]
-
-
-def advice(rows: Sequence[Parameter]) -> list[str]:
-    """What to record next, and for which numbers."""
-    weak = [row for row in rows if row.verdict != "usable" and row.advice]
-    groups = _grouped(weak, [(row.advice or "",) for row in weak])
-    return [f"  for {', '.join(names)}: {text}" for (text,), names in groups.items()]
-
-
-def _grouped(rows: Sequence[Parameter], keys: Sequence[tuple[str, ...]]) -> dict[tuple[str, ...], list[str]]:
-    groups: dict[tuple[str, ...], list[str]] = {}
-    for row, key in zip(rows, keys, strict=True):
-        groups.setdefault(key, []).append(f"{row.foot} {row.axis} {_term(row)}")
-    return groups
 
 
 def _term(row: Parameter) -> str:
@@ -160,18 +155,14 @@ def assumption_cells(rows: Sequence[Assumption]) -> list[tuple[str, ...]]:
         assumed = f"{number(factor * row.assumed, 2)} {shown}".strip()
         if row.found is not None:
             value = factor * row.found
-            text = (
-                number(value, 2) if row.std is None else with_uncertainty(value, factor * NORMAL95 * row.std)
-            )
+            half = None if row.std is None else factor * NORMAL95 * row.std
+            text = number(value, 2) if half is None else with_uncertainty(value, half)
             found = f"{text} {shown}".strip()
-        widths = [
-            f"± {percent(width)}" if width else MISSING
-            for width in (row.stiffness_percent, row.damping_percent)
-        ]
+        both = row.stiffness_percent, row.damping_percent
+        widths = [f"± {percent(width)}" if width else MISSING for width in both]
+        new = row.name != last
         cells.append(
-            (row.name, assumed, row.what, found, *widths)
-            if row.name != last
-            else ("", "", row.what, found, "", "")
+            (row.name, assumed, row.what, found, *widths) if new else ("", "", row.what, found, "", "")
         )
         last = row.name
     return cells

@@ -87,4 +87,5 @@ def percent(value: float | None) -> str:
 
 
 def _minus(text: str) -> str:
-    return text.replace("-", "−")
+    """With the sign that is as wide as a plus; none before what is rounded to zero."""
+    return text.replace("-", "−") if float(text) else text.removeprefix("-")

@@ -32,13 +32,10 @@ class Reference:
         return (self.pitch + self.roll) / 2
 
 
+PAPER: Final = "table 1 of the paper (see the citation)"
 REFERENCES: Final = (
-    Reference(
-        "HRP-2, right foot", 434, 323, None, 16.7, "measured", "table 1 of the paper (see the citation)"
-    ),
-    Reference(
-        "HRP-2, left foot", 480, 352, None, 26.2, "measured", "table 1 of the paper (see the citation)"
-    ),
+    Reference("HRP-2, right foot", 434, 323, None, 16.7, "measured", PAPER),
+    Reference("HRP-2, left foot", 480, 352, None, 26.2, "measured", PAPER),
     Reference("HRP-2", 502, 707, 239018, None, "configured", "simple-biped, sot-torque-control"),
     Reference("HRP-2", 600, 600, 40000, 60, "configured", "sot-state-observation, sot-stabilizer"),
     Reference("any, Kinetics Observer's default", 400, 400, 40000, 12, "configured", "state-observation"),

@@ -160,9 +160,8 @@ def _labels(table: Any, name: str) -> tuple[NDArray[np.intp], list[str]]:
     column = table.column(name)
     if not pa.types.is_dictionary(column.type) or column.null_count:
         column = column.cast("string").combine_chunks().fill_null("").dictionary_encode()
-        return np.asarray(column.indices, dtype=np.intp), [
-            str(text) for text in column.dictionary.to_pylist()
-        ]
+        words = [str(text) for text in column.dictionary.to_pylist()]
+        return np.asarray(column.indices, dtype=np.intp), words
     coded = column.unify_dictionaries().combine_chunks()
     codes, texts = np.asarray(coded.indices, dtype=np.intp), coded.dictionary.to_pylist()
     present, first = np.unique(codes, return_index=True)

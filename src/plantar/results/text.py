@@ -32,13 +32,15 @@ def warnings(notes: Sequence[Note]) -> list[str]:
 def html_table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A table for a notebook; every text is escaped."""
     head = "".join(f"<th {CELL}>{escape(name)}</th>" for name in heads)
-    body = "".join(
-        "<tr>" + "".join(f"<td {CELL}>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
+    filled = ("".join(f"<td {CELL}>{escape(cell)}</td>" for cell in row) for row in rows)
+    body = "".join(f"<tr>{cells}</tr>" for cells in filled)
     title = f'<caption style="text-align:left;padding:4px 10px">{escape(caption)}</caption>'
     return f"<table>{title}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def html_lines(lines: Iterable[str]) -> str:
     """Lines of text under a table."""
-    return "".join(f'<div style="padding:1px 10px">{escape(line.strip())}</div>' for line in lines)
+    return "".join(
+        f'<div style="padding:1px 10px 1px {10 + 10 * (len(line) - len(line.lstrip()))}px">{escape(line.strip())}</div>'
+        for line in lines
+    )

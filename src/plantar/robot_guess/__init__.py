@@ -63,9 +63,8 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
         # What is wrong with the map names its file.
         reading = replace(_loaded(blind, urdf, mapped), path=columns)
     sensors = look_at(logs, reading)
-    recorded = {
-        name.split(".")[1] for log in sensors.logs for name in log.columns if name.startswith("joint.")
-    }
+    named = (name for log in sensors.logs for name in log.columns)
+    recorded = {name.split(".")[1] for name in named if name.startswith("joint.")}
     biped = without_toes(biped, tree, model, recorded | following_joints(text).keys())
     soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
     draft = _first_draft(tree, soles, sensors, urdf)

@@ -116,9 +116,8 @@ def without_toes(biped: Biped, tree: UrdfTree, model: pin.Model, recorded: Colle
     for leg in biped.legs:
         held = tuple(name for name in leg.joints if name in recorded)
         toes = FEWEST_JOINTS <= len(held) < len(leg.joints) and leg.joints[: len(held)] == held
-        legs.append(
-            replace(_limb(tree, model, data, model.getJointId(held[-1])), side=leg.side) if toes else leg
-        )
+        whole = replace(_limb(tree, model, data, model.getJointId(held[-1])), side=leg.side) if toes else leg
+        legs.append(whole)
     return replace(biped, legs=tuple(legs))
 
 

@@ -16,21 +16,8 @@ from plantar.robot_guess.stance import Stance
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[0-9]+")
 BODY = {"torso", "chest", "trunk", "body", "pelvis", "waist", "base", "root", "hip"}
 NOT_IT = {
-    "skin",
-    "hand",
-    "arm",
-    "leg",
-    "foot",
-    "camera",
-    "head",
-    "neck",
-    "lidar",
-    "l",
-    "r",
-    "left",
-    "right",
-    "wrist",
-}
+    "skin", "hand", "arm", "leg", "foot", "camera", "head", "neck", "lidar", "l", "r", "left", "right", "wrist",
+}  # fmt: skip
 TRUNK = 0.1  # m: an IMU sits so far from the origin of the link that carries it
 MOST_NAMED = 4  # other frames in a comment
 

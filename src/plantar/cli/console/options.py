@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, BadParameter, Option
 
 from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, OffsetRule
 
@@ -45,7 +45,7 @@ def size_in_bytes(text: str) -> int:
     found = SIZE.fullmatch(text.strip())
     size = int(float(found[1]) * SIZES[found[2].upper()]) if found else 0
     if size < 1:
-        raise typer.BadParameter(f"'{text}' is not a size (valid: 500MB, 8GB, ...)")
+        raise BadParameter(f"'{text}' is not a size (valid: 500MB, 8GB, ...)")
     return size
 
 
@@ -54,59 +54,53 @@ def seconds(text: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise typer.BadParameter(
-            f"'{text}' is not a number of milliseconds (valid: 5, 7.5, -2, ...)"
-        ) from None
+        raise BadParameter(f"'{text}' is not a number of milliseconds (valid: 5, 7.5, -2, ...)") from None
     if 0 < abs(value) < LEAST_DELAY:
         told = f"{value:g} ms is no delay that a log could show; the unit is ms"
         valid = f"{1e3 * value:g} for {value:g} s; 0; {LEAST_DELAY:g} or more"
-        raise typer.BadParameter(f"{told} (valid: {valid})")
+        raise BadParameter(f"{told} (valid: {valid})")
     return 1e-3 * value
 
 
 def bush_model(text: str) -> str:
     """The name of a bush model, or `auto`. Raises typer.BadParameter."""
     if text not in MODEL_CHOICES:
-        raise typer.BadParameter(f"'{text}' is not one of {', '.join(MODEL_CHOICES)}")
+        raise BadParameter(f"'{text}' is not one of {', '.join(MODEL_CHOICES)}")
     return text
 
 
-Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
-FeetFile = Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")]
-Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]
+Robot = Annotated[Path, Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
+FeetFile = Annotated[Path, Argument(help="The result of `identify feet`.", metavar="RESULT.json")]
+Logs = Annotated[list[Path], Argument(help="Logs to fit.", metavar="LOG...")]
 Validate = Annotated[
     list[Path] | None,
-    typer.Option(
+    Option(
         "--validate",
         metavar="LOG...",
         help="One log or more that are not fitted: predicted and scored only (table 3).",
     ),
 ]
 Out = Annotated[
-    Path, typer.Option("--out", metavar="DIR", help="Folder for result.json, the residuals and the report.")
+    Path, Option("--out", metavar="DIR", help="Folder for result.json, the residuals and the report.")
 ]
-Memory = Annotated[
-    int | None, typer.Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
-]
-WrenchDelay = Annotated[
-    float | None, typer.Option("--wrench-delay", parser=seconds, metavar="MS", help=DELAY_HELP)
-]
-Offset = Annotated[OffsetRule, typer.Option(help="One offset per motion, or shared by all as in the paper.")]
-Model = Annotated[str, typer.Option(parser=bush_model, help=MODEL_HELP, metavar="MODEL")]
+Memory = Annotated[int | None, Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)]
+WrenchDelay = Annotated[float | None, Option("--wrench-delay", parser=seconds, metavar="MS", help=DELAY_HELP)]
+Offset = Annotated[OffsetRule, Option(help="One offset per motion, or shared by all as in the paper.")]
+Model = Annotated[str, Option(parser=bush_model, help=MODEL_HELP, metavar="MODEL")]
 Cutoff = Annotated[
     float,
-    typer.Option(
+    Option(
         metavar="HZ", help="Cut-off of the zero-phase low-pass filter on motion and forces, in Hz.", min=0.1
     ),
 ]
 AsRecorded = Annotated[
     bool,
-    typer.Option(
+    Option(
         "--as-recorded", help="Report wrench channels that contradict Newton's law, but do not correct them."
     ),
 ]
-Swing = Annotated[float | None, typer.Option("--swing", help=SWING_HELP, metavar="RAD")]
-Pivot = Annotated[str, typer.Option("--pivot", help=PIVOT_HELP, metavar="PIVOT")]
-LeastLoad = Annotated[float, typer.Option("--least-load", help=LEAST_LOAD_HELP, metavar="SHARE")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No tables, no progress.")]
+Swing = Annotated[float | None, Option("--swing", help=SWING_HELP, metavar="RAD")]
+Pivot = Annotated[str, Option("--pivot", help=PIVOT_HELP, metavar="PIVOT")]
+LeastLoad = Annotated[float, Option("--least-load", help=LEAST_LOAD_HELP, metavar="SHARE")]
+Json = Annotated[bool, Option("--json", help="Print JSON instead of tables.")]
+Quiet = Annotated[bool, Option("--quiet", "-q", help="No tables, no progress.")]

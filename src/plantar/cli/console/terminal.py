@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from plantar.notes import Note, NoteKind, kinds
+from plantar.results.io import dump_json
 
 if TYPE_CHECKING:  # what prints nothing does not import it
     from rich.console import Console
@@ -59,6 +60,11 @@ def table(
     return drawn
 
 
+def print_json(**content: Any) -> None:
+    """What a command says, for a script."""
+    print(dump_json(content), end="")
+
+
 def print_notes(out: Console, notes: Sequence[Note], room: int = SCREENFUL) -> None:
     """Notes by their kinds, each warning in full and before the others, of other kinds the first; those that `room`
     lines hold, the first in any case, the rest counted."""
@@ -77,11 +83,8 @@ def print_notes(out: Console, notes: Sequence[Note], room: int = SCREENFUL) -> N
 
 
 def _remark(kind: NoteKind) -> str:
-    return (
-        f"{kind.text} (and {len(kind.others)} more like it, in the result's notes)"
-        if kind.others
-        else kind.text
-    )
+    more = f" (and {len(kind.others)} more like it, in the result's notes)" if kind.others else ""
+    return f"{kind.text}{more}"
 
 
 def number(value: float | None, digits: int = 4) -> str:

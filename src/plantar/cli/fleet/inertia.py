@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
@@ -23,7 +23,7 @@ from plantar.whole_body.settings import DynamicsSettings
 
 
 def run(
-    manifest: Annotated[Path, typer.Argument(help="CSV file as for `fleet run`.", metavar="MANIFEST.csv")],
+    manifest: Annotated[Path, Argument(help="CSV file as for `fleet run`.", metavar="MANIFEST.csv")],
     out: options.Out,
     workers: Workers = None,
     scheduler: Scheduler = None,

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, BadParameter, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
@@ -24,16 +24,12 @@ UNIT_HELP = (
 
 
 def run(
-    logs: Annotated[
-        list[str], typer.Argument(help="Logs: paths, patterns in quotes, or URLs.", metavar="GLOB...")
-    ],
-    robot: Annotated[
-        Path, typer.Option("--robot", metavar="ROBOT.yaml", help="Robot file of all these logs.")
-    ],
-    unit: Annotated[str | None, typer.Option(metavar="NAME", help=UNIT_HELP)] = None,
+    logs: Annotated[list[str], Argument(help="Logs: paths, patterns in quotes, or URLs.", metavar="GLOB...")],
+    robot: Annotated[Path, Option("--robot", metavar="ROBOT.yaml", help="Robot file of all these logs.")],
+    unit: Annotated[str | None, Option(metavar="NAME", help=UNIT_HELP)] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="MANIFEST.csv", help="The manifest; it is printed if left out."),
+        Option("--out", metavar="MANIFEST.csv", help="The manifest; it is printed if left out."),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
@@ -62,16 +58,16 @@ def _unit(unit: str | None, default: str) -> Callable[[str], str]:
     try:
         pattern = re.compile(unit)
     except re.error as error:
-        raise typer.BadParameter(f"'{unit}' is no regular expression: {error}", param_hint="--unit") from None
+        raise BadParameter(f"'{unit}' is no regular expression: {error}", param_hint="--unit") from None
     if pattern.groups != 1:
-        raise typer.BadParameter(
+        raise BadParameter(
             f"'{unit}' has {pattern.groups} groups in parentheses, not one", param_hint="--unit"
         )
 
     def found(place: str) -> str:
         match = pattern.search(place)
         if match is None or not match[1]:
-            raise typer.BadParameter(f"'{unit}' finds no unit in {place}", param_hint="--unit")
+            raise BadParameter(f"'{unit}' finds no unit in {place}", param_hint="--unit")
         return match[1]
 
     return found

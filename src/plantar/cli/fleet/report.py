@@ -5,10 +5,10 @@ from __future__ import annotations
 import json as json_format
 from typing import Annotated, Any, Final
 
-import typer
 from rich.markup import escape
+from typer import Argument, Option
 
-from plantar.cli.console.terminal import SCREENFUL, console
+from plantar.cli.console.terminal import SCREENFUL, console, print_json
 from plantar.fleet.places import Store
 from plantar.fleet.summary import FALSE_ALARMS, FleetSummary, summary_of
 from plantar.fleet.tables import read_failures, read_groups, read_results
@@ -23,12 +23,10 @@ RATE_HELP = "False alarms to accept, per robot and year."
 
 
 def run(
-    folder: Annotated[str, typer.Argument(help="The --out of `plantar fleet run`.", metavar="DIR")],
-    false_alarms: Annotated[float, typer.Option(help=RATE_HELP)] = FALSE_ALARMS,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print fleet.json instead of the page's path.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing.")] = False,
+    folder: Annotated[str, Argument(help="The --out of `plantar fleet run`.", metavar="DIR")],
+    false_alarms: Annotated[float, Option(metavar="N", help=RATE_HELP)] = FALSE_ALARMS,
+    json: Annotated[bool, Option("--json", help="Print fleet.json instead of the page's path.")] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Print nothing.")] = False,
 ) -> None:
     """A fleet's results together: fleet.html with alarms, robots over time and failures; fleet.json for scripts.
 
@@ -37,7 +35,7 @@ def run(
     store = Store(folder)
     summary = write_report(store, false_alarms)
     if json:
-        print(dump_json(summary.to_dict()), end="")
+        print_json(**summary.to_dict())
     elif not quiet:
         print_alarms(summary)
         print(store.path(PAGE))

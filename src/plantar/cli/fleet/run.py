@@ -9,7 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Final
 
-import typer
+from typer import Argument, BadParameter, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
@@ -27,28 +27,28 @@ MEMORY_HELP = (
     "Memory of each worker that this command starts, such as 2GB. A worker that takes more is restarted."
 )
 Workers = Annotated[
-    int | None, typer.Option(metavar="N", help="Processes on this machine; one per core if left out.", min=1)
+    int | None, Option(metavar="N", help="Processes on this machine; one per core if left out.", min=1)
 ]
-Scheduler = Annotated[str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")]
+Scheduler = Annotated[str | None, Option(help="Address of a running Dask cluster.", metavar="ADDRESS")]
 WorkerMemory = Annotated[
-    int | None, typer.Option("--memory", parser=options.size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
+    int | None, Option("--memory", parser=options.size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
 ]
 EVERY: Final = 5.0  # s between lines of progress where stderr is no terminal
 
 
 def run(
     manifest: Annotated[
-        Path, typer.Argument(help="CSV file: group, robot, log[, role, time, unit].", metavar="MANIFEST.csv")
+        Path, Argument(help="CSV file: group, robot, log[, role, time, unit].", metavar="MANIFEST.csv")
     ],
-    out: Annotated[str, typer.Option("--out", metavar="DIR", help=OUT_HELP)],
+    out: Annotated[str, Option("--out", metavar="DIR", help=OUT_HELP)],
     workers: Workers = None,
     scheduler: Scheduler = None,
     memory: WorkerMemory = None,
     offset: options.Offset = "per-motion",
     model: options.Model = AUTOMATIC,
     wrench_delay: options.WrenchDelay = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the counts as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no counts.")] = False,
+    json: Annotated[bool, Option("--json", help="Print the counts as JSON.")] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="No progress, no counts.")] = False,
 ) -> None:
     """`identify feet` for every group of a manifest, on all cores or on a Dask cluster; finished groups are kept.
 
@@ -57,7 +57,7 @@ def run(
     Example: plantar fleet run fleet.csv --out out/fleet
     """
     if workers is not None and scheduler is not None:
-        raise typer.BadParameter("a running cluster has workers of its own", param_hint="--workers")
+        raise BadParameter("a running cluster has workers of its own", param_hint="--workers")
     settings = FeetSettings(offset, model, wrench_delay=wrench_delay)
     groups = read_manifest(seen_by_workers(str(manifest), scheduler))
     if not is_remote(out):

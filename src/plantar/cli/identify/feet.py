@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import typer
+from typer import Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
@@ -33,8 +33,8 @@ def run(
     offset: options.Offset = "per-motion",
     model: options.Model = AUTOMATIC,
     wrench_delay: options.WrenchDelay = None,
-    cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, metavar="HZ", min=0.1)] = None,
-    window: Annotated[float | None, typer.Option(help=WINDOW_HELP, metavar="DEG", min=0.01)] = None,
+    cutoff: Annotated[float | None, Option(help=CUTOFF_HELP, metavar="HZ", min=0.1)] = None,
+    window: Annotated[float | None, Option(help=WINDOW_HELP, metavar="DEG", min=0.01)] = None,
     memory: options.Memory = None,
     json: options.Json = False,
     quiet: options.Quiet = False,

@@ -31,8 +31,7 @@ def print_feet(out: Console, result: FeetResult) -> None:
         print_notes(out, warnings)
         out.print()
     out.print(parameter_table(result, narrow=out.width < NARROW))
-    for verdict, names, rest in advised(result.parameters):
-        out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
+    print_advice(out, result.parameters)
     if further := on_feet(row.verdict for row in result.parameters):
         out.print(escape(further))
     for kind, title in (("direct", "Table 2. Direct validation"), ("cross", "Table 3. Cross validation")):
@@ -86,6 +85,14 @@ def _error_table(title: str, what: str, rows: list[tuple[str, ValidationRow, str
     ]  # fmt: skip
     columns = (what, "foot", "axis", "mean |error|", "rms", "max |torque|", "% of max", "offset alone", "")
     return table(f"{title} [N·m]", columns, cells, ["yellow" if lost else "" for *_, lost in rows])
+
+
+def print_advice(out: Console, parameters: Sequence[Parameter]) -> None:
+    """Why numbers are not usable and what to record next, a line for those that are alike."""
+    from rich.markup import escape
+
+    for verdict, names, rest in advised(parameters):
+        out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
 
 
 def advised(parameters: Sequence[Parameter]) -> Iterator[tuple[Verdict, str, str]]:

@@ -6,12 +6,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from plantar.cli.console.terminal import console, end_progress, progress
+from plantar.cli.console.terminal import console, end_progress, print_json, progress
 from plantar.files import refuse_file
 from plantar.logs.freed_memory import keep_freed, return_freed
 from plantar.logs.inputs import open_together, robot_of
 from plantar.logs.motion_log import MotionLog
-from plantar.results.io import dump_json
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -58,7 +57,7 @@ def keep(
     written = [path, *(out / name for name in beside), report(path)]
     end_progress(quiet)
     if json:
-        print(dump_json(result.to_dict()), end="")
+        print_json(**result.to_dict())
     elif not quiet:
         screen = console()
         show(screen, result)

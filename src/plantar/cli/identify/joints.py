@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
+from typer import Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
@@ -23,7 +23,7 @@ def run(
     logs: options.Logs,
     out: options.Out,
     validate: options.Validate = None,
-    inertia: Annotated[Inertia, typer.Option("--inertia", help=HELP)] = "together",
+    inertia: Annotated[Inertia, Option("--inertia", help=HELP)] = "together",
     cutoff: options.Cutoff = DynamicsSettings.cutoff,
     as_recorded: options.AsRecorded = False,
     memory: options.Memory = None,

@@ -51,9 +51,7 @@ class Attempt:
     shares: Array = field(init=False)  # (S, KINDS) of the limits over each bush
     others: float = 1.0  # share of the limits over no bush
     still: tuple[str, ...] = ()
-    first: list[float] = field(
-        init=False
-    )  # factors of the stiffness at which it is rehearsed before the others
+    first: list[float] = field(init=False)  # factors of stiffness that are rehearsed before the others
     rehearsals: dict[float, Rehearsal] = field(default_factory=dict)  # of the motion as it is, by factor
 
     def __post_init__(self) -> None:

@@ -84,14 +84,8 @@ def rehearse(
     """Play a plan on feet of `factors` times the stiffness told, on all cores, with the imperfections of the default
     preset."""
     preset = preset_named(DEFAULT)
-    worlds = [
-        replace(
-            preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor))), robot),
-            timestep=TIMESTEP,
-            floor=FLOOR,
-        )
-        for factor in factors
-    ]
+    bushes = (dict.fromkeys(robot.feet, bush_of(told.times(factor))) for factor in factors)
+    worlds = [replace(preset.physics(each, robot), timestep=TIMESTEP, floor=FLOOR) for each in bushes]
     progress(f"rehearse at {', '.join(f'{factor:.2g}' for factor in factors)} times the stiffness")
     rollouts = roll_each([(plan, world) for world in worlds], robot)
     found = []

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final
 
 from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import mesh_note
 from plantar.exporters.contact.springs import (
     FRICTION,
     RADIUS,
@@ -24,7 +23,7 @@ from plantar.exporters.contact.springs import (
     spring_foot,
 )
 from plantar.exporters.poses import pose
-from plantar.exporters.shapes import reaches_sole
+from plantar.exporters.shapes import taken_off
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Notes
@@ -54,9 +53,8 @@ def write(job: Job, notes: Notes) -> str:
         for point in points:
             _add(tree, foot, point, 0.0 if point.middle else outer)
         notes += [*said(foot, made, weight), *sliding_note(foot, points)]
-    text = "load it without URDF_MERGE_FIXED_LINKS; the ground keeps Bullet's own hard contact; steps of 0.5 to 4 ms "
-    text += "hold K"
-    notes.info("export_bullet", text)
+    text = "load it without URDF_MERGE_FIXED_LINKS; the ground keeps Bullet's own hard contact"
+    notes.info("export_bullet", f"{text}; steps of 0.5 to 4 ms hold K")
     return to_text(tree.root, job.head("Bullet's contact", notes, joints=False))
 
 
@@ -69,21 +67,15 @@ def _taken_out(tree: UrdfTree, foot: FootBush) -> None:
 
 def _silenced(tree: UrdfTree, foot: FootBush, notes: Notes) -> float:
     """Take out the shapes that stand on the ground; the friction of the link that carried them."""
-    quiet, friction = [], FRICTION
+    quiet, friction = list[str](), FRICTION
     tree.link(foot.ankle)
     queue = [(foot.ankle, pose(foot.centre * 0))]
     while queue:
         name, place = queue.pop()
         queue += [(child, place @ origin_of(joint)) for joint, child in tree.fixed_children(name)]
         link = tree.links[name]
-        for index, shape in enumerate(link.findall("collision")):
-            points = tree.points(shape)
-            if points is None:
-                notes.append(mesh_note(foot))
-            elif not reaches_sole(points @ place[:3, :3].T + place[:3, 3], foot):
-                continue
-            link.remove(shape)
-            quiet.append(f"{name} {shape.get('name', index)}")
+        if taken := taken_off(link, place, tree.points, foot, notes, ("collision",)):
+            quiet += [f"{name} {said.removeprefix('collision ')}" for said, _ in taken]
             given = link.find("contact/lateral_friction")
             if given is not None:
                 friction = float(vector(given.get("value"), 1, "lateral_friction")[0])
@@ -106,9 +98,8 @@ def _add(tree: UrdfTree, foot: FootBush, placed: Placed, friction: float) -> Non
     ET.SubElement(inertial, "mass", value=numbers([LIGHT[0]]))
     unit = numbers([LIGHT[1]])
     ET.SubElement(inertial, "inertia", ixx=unit, ixy="0", ixz="0", iyy=unit, iyz="0", izz=unit)
-    ET.SubElement(
-        ET.SubElement(ET.SubElement(link, "collision"), "geometry"), "sphere", radius=numbers([RADIUS])
-    )
+    geometry = ET.SubElement(ET.SubElement(link, "collision"), "geometry")
+    ET.SubElement(geometry, "sphere", radius=numbers([RADIUS]))
     joint = ET.SubElement(tree.root, "joint", name=f"{placed.name}_fixed", type="fixed")
     set_origin(joint, pose(placed.centre))
     ET.SubElement(joint, "parent", link=foot.ankle)

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Final
 
 from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import mesh_note
 from plantar.exporters.contact.springs import FRICTION, RADIUS, Placed, placed, said, spring_foot
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.drake import MESHES, URI, tag
 from plantar.exporters.sdf.from_urdf import tree_of
 from plantar.exporters.sdf.tree import SdfTree, relative, set_pose
-from plantar.exporters.shapes import reaches_sole
+from plantar.exporters.shapes import taken_off
 from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Notes
 
@@ -58,13 +57,7 @@ def _silenced(tree: SdfTree, foot: FootBush, notes: Notes) -> float:
         name = queue.pop()
         queue += [child for _, child in tree.fixed_children(name)]
         place = relative(tree, name, foot.ankle)
-        for shape in tree.links[name].findall("collision"):
-            points = tree.points(shape)
-            if points is None:
-                notes.append(mesh_note(foot))
-            elif not reaches_sole(points @ place[:3, :3].T + place[:3, 3], foot):
-                continue
-            tree.links[name].remove(shape)
+        for _, shape in taken_off(tree.links[name], place, tree.points, foot, notes, ("collision",)):
             if friction is None:
                 friction = _friction(shape)
             if not shape.get("name", "").startswith(f"{foot.name}_contact_"):

@@ -21,7 +21,7 @@ from plantar.exporters.contact.bush_on_sole import BushOnSole
 from plantar.exporters.contact.points import PointFoot
 from plantar.exporters.mjcf.file import Compiled
 from plantar.exporters.spring import DAMPING_TIME, Slip
-from plantar.exporters.xml_file import numbers
+from plantar.exporters.xml_file import child_of, numbers
 
 TURNS: Final[tuple[Axis, ...]] = ("roll", "pitch")  # in the order of the bush's axes x and y
 SITE, NUMBERS = "_contact_bush", "_contact_law"
@@ -54,8 +54,6 @@ def carry(
     axes = [model.moved(foot.centre + turned[:, place], foot.ankle, name) - centre for place in (0, 1)]
     site = {"name": foot.name + SITE, "pos": numbers(centre), "xyaxes": numbers(np.concatenate(axes))}
     ET.SubElement(holder, "site", site | {"size": "0.001", "rgba": "0 0 0 0"})
-    section = root.find("custom")
-    section = ET.SubElement(root, "custom") if section is None else section
     up = points.vertical[0]
     own = (up, DAMPING_TIME * up), *(points.turning(axis) for axis in TURNS)
     springs = [foot.spring("z"), *(foot.spring(axis) for axis in TURNS)]
@@ -64,7 +62,7 @@ def carry(
     data = [free, *(k for k, _ in law), *(c for _, c in law)]
     data += [number for slip in slips for number in ((slip.torque, slip.angle) if slip else (0.0, 1.0))]
     data += ((foot.sole - foot.centre) @ foot.rotation)[:, :2].ravel().tolist()
-    ET.SubElement(section, "numeric", name=foot.name + NUMBERS, data=numbers(data))
+    ET.SubElement(child_of(root, "custom"), "numeric", name=foot.name + NUMBERS, data=numbers(data))
 
 
 @dataclass(frozen=True)

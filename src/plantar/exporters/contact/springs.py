@@ -75,16 +75,11 @@ def placed(bush: FootBush, foot: PointFoot, weight: float) -> list[Placed]:
     rest = [spring.rest if spring else 0.0 for spring in (bush.spring("roll"), bush.spring("pitch"))]
     turn = bush.rotation @ rotation_from_rpy(np.array([rest[0], rest[1], 0.0]))
     low = max(p.lower for p in foot.points)
-    return [
-        Placed(
-            f"{bush.name}_contact_{place}",
-            p,
-            turn @ np.array([p.x, p.y, RADIUS - foot.depth - p.lower]) + bush.centre,
-            push,
-            p.lower < low,
-        )
-        for place, (p, push) in enumerate(zip(foot.points, pushes(foot, LOADS[0] * weight), strict=True))
-    ]
+    found = []
+    for place, (p, push) in enumerate(zip(foot.points, pushes(foot, LOADS[0] * weight), strict=True)):
+        centre = turn @ np.array([p.x, p.y, RADIUS - foot.depth - p.lower]) + bush.centre
+        found.append(Placed(f"{bush.name}_contact_{place}", p, centre, push, p.lower < low))
+    return found
 
 
 def share_of_friction(points: Sequence[Placed]) -> float:

@@ -20,7 +20,7 @@ from plantar.exporters.contact.springs import vertical_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import opened
 from plantar.exporters.shapes import reaches_sole
-from plantar.exporters.xml_file import numbers, to_text
+from plantar.exporters.xml_file import child_of, numbers, to_text
 from plantar.notes import Note, Notes
 
 if TYPE_CHECKING:
@@ -106,13 +106,8 @@ def _insert(
         # Every attribute that a default class of the model could set is written out.
         place_in = model.moved(foot.rotation @ centre + foot.centre, foot.ankle, name)
         second = "second_" if point.lower < 0 else ""
-        shape = {
-            "name": f"{_named(foot)}{second}{place}",
-            "type": "sphere",
-            "size": numbers([RADIUS]),
-            "mass": "0",
-        }
-        shape |= {"pos": numbers(place_in), "condim": "3", "solmix": "1"}
+        shape = {"name": f"{_named(foot)}{second}{place}", "type": "sphere", "size": numbers([RADIUS])}
+        shape |= {"mass": "0", "pos": numbers(place_in), "condim": "3", "solmix": "1"}
         ET.SubElement(holder, "geom", shape | touch | contact_attributes(point, inverse_mass))
     if not hysteresis:
         return
@@ -164,8 +159,7 @@ def _silence(
 
 def _harden_friction(root: ET.Element, notes: Notes) -> None:
     """Elliptic cones, for which the formulas of the points hold, and friction harder than the soft normal."""
-    option = root.find("option")
-    option = ET.SubElement(root, "option") if option is None else option
+    option = child_of(root, "option")
     impratio = max(IMPRATIO, float(option.get("impratio", "1")))
     option.attrib |= {"cone": "elliptic", "impratio": numbers([impratio])}
     text = f"the model's cone is elliptic and its impratio {impratio:g} now: soft feet creep sideways without"

@@ -212,9 +212,8 @@ class Compiled:
         mine = int(weld[self._id("BODY", body)])
         above = int(weld[model.body_parentid[mine]])
         near = {mine, above} - {0}
-        near |= {
-            int(weld[b]) for b in range(1, model.nbody) if int(weld[model.body_parentid[weld[b]]]) == mine
-        }
+        others = (int(weld[body]) for body in range(1, model.nbody))
+        near |= {other for other in others if int(weld[model.body_parentid[other]]) == mine}
         names = [model.body(b).name for b in range(1, model.nbody) if int(weld[b]) in near]
         return [name for name in names if name]
 

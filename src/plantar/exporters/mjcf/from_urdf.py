@@ -10,6 +10,7 @@ from plantar.errors import ExportError, needs
 from plantar.exporters.bush import FootBush
 from plantar.exporters.mjcf.file import load_mjcf
 from plantar.exporters.urdf.tree import UrdfTree
+from plantar.exporters.xml_file import child_of
 from plantar.notes import Notes
 
 if TYPE_CHECKING:
@@ -43,14 +44,9 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: Notes) -> ET.E
     tree.let_go(notes)
     lost = _collision_only(tree)
     if lost:
-        notes.warning(
-            "export_mesh",
-            f"meshes MuJoCo cannot read, left out, so those links touch nothing: {', '.join(lost[:4])}",
-        )
-    extension = tree.root.find("mujoco")
-    extension = ET.SubElement(tree.root, "mujoco") if extension is None else extension
-    compiler = extension.find("compiler")
-    compiler = ET.SubElement(extension, "compiler") if compiler is None else compiler
+        text = "meshes MuJoCo cannot read, left out, so those links touch nothing"
+        notes.warning("export_mesh", f"{text}: {', '.join(lost[:4])}")
+    compiler = child_of(child_of(tree.root, "mujoco"), "compiler")
     compiler.attrib |= {"fusestatic": "false", "discardvisual": "true", "strippath": "false"}
     try:
         spec = _import(tree, compiler, notes)
@@ -70,9 +66,7 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: Notes) -> ET.E
         world.insert(0, ET.Element("geom", name="floor", type="plane", size="0 0 0.05"))
         for geom in world.iter("geom"):
             geom.set("solref", STIFF)
-    option = model.find("option")
-    option = ET.SubElement(model, "option") if option is None else option
-    option.attrib |= {"timestep": "0.001", "integrator": "implicitfast"}
+    child_of(model, "option").attrib |= {"timestep": "0.001", "integrator": "implicitfast"}
     notes.info("export_urdf", f"made from {path.name} with a floor, without actuators or visual shapes")
     return model
 

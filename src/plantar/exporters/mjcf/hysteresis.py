@@ -12,7 +12,7 @@ from typing import Final
 
 from plantar.exporters.bush import FootBush
 from plantar.exporters.spring import Spring
-from plantar.exporters.xml_file import numbers
+from plantar.exporters.xml_file import child_of, numbers
 
 # The slipping body's inertia is the tendon's stiffness times this squared. Heavier, it lags behind what it should
 # slip; lighter, it creeps while it should stand: MuJoCo's dry friction lets slip_angle * IMPERFECT * step / time²
@@ -71,12 +71,9 @@ def _add_body(ankle: ET.Element, foot: FootBush, spring: Spring) -> ET.Element:
 
 
 def _add_tendon(root: ET.Element, foot: FootBush, spring: Spring) -> ET.Element:
-    section = root.find("tendon")
-    section = ET.SubElement(root, "tendon") if section is None else section
-    tendon = ET.SubElement(
-        section, "fixed", name=slip_joint(foot, spring), springlength="0", damping="0", frictionloss="0",
-        limited="false",
-    )  # fmt: skip
+    tendons = child_of(root, "tendon")
+    still = {"springlength": "0", "damping": "0", "frictionloss": "0", "limited": "false"}
+    tendon = ET.SubElement(tendons, "fixed", still, name=slip_joint(foot, spring))
     ET.SubElement(tendon, "joint", joint=foot.joint(spring.axis), coef="1")
     ET.SubElement(tendon, "joint", joint=slip_joint(foot, spring), coef="-1")
     return tendon

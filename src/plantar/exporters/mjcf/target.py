@@ -15,13 +15,13 @@ import numpy as np
 
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush, earlier_joints
-from plantar.exporters.comment import plate_note, updated_note
+from plantar.exporters.comment import moved_note, plate_note, updated_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import STIFF, opened
 from plantar.exporters.mjcf.hysteresis import set_slip, slip_joint
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
 from plantar.exporters.spring import Spring
-from plantar.exporters.xml_file import numbers, to_text
+from plantar.exporters.xml_file import child_of, numbers, to_text
 from plantar.notes import Note, Notes
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: Notes) ->
     bodies = _move_bodies(body, sole, foot, before)
     sites = _move_sites(root, body, sole, foot, before)
     if moved := shapes + bodies + sites:
-        notes.info("export_moved", f"{foot.name}: moved from '{foot.ankle}' to the sole: {', '.join(moved)}")
+        notes.append(moved_note(foot, moved))
     _check_level(foot, before, notes)
     if not before.reaching(foot):
         size, centre = plate(foot)
@@ -186,8 +186,7 @@ def _share_mass(body: ET.Element, sole: ET.Element, foot: FootBush, before: Comp
 
 def _exclude(root: ET.Element, foot: FootBush, before: Compiled) -> None:
     """No contacts that MuJoCo filtered while the sole was part of the ankle, and those excluded by hand."""
-    section = root.find("contact")
-    section = ET.SubElement(root, "contact") if section is None else section
+    section = child_of(root, "contact")
     others = {foot.ankle, *before.neighbours(foot.ankle)}
     for element in section.findall("exclude"):
         pair = {element.get("body1"), element.get("body2")}

@@ -21,7 +21,7 @@ from plantar.exporters.poses import pose
 from plantar.exporters.sdf.target import fixed_to_ankle, insert_bushes
 from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.spring import Spring
-from plantar.exporters.xml_file import numbers, to_text
+from plantar.exporters.xml_file import child_of, numbers, to_text
 from plantar.notes import Notes
 
 if TYPE_CHECKING:
@@ -54,26 +54,18 @@ def _unactuated(tree: SdfTree, foot: FootBush) -> None:
     for spring in foot.springs:
         axis = tree.joints[foot.joint(spring.axis)].find("axis")
         assert axis is not None, "the joint's dynamics were looked for there"
-        limit = axis.find("limit")
-        limit = ET.SubElement(axis, "limit") if limit is None else limit
-        effort = limit.find("effort")
-        effort = ET.SubElement(limit, "effort") if effort is None else effort
-        effort.text = "0"
+        child_of(child_of(axis, "limit"), "effort").text = "0"
 
 
 def _bushing(tree: SdfTree, foot: FootBush) -> None:
     free = [foot.joint(axis) for axis in AXES if foot.joint(axis) in tree.joints and not foot.spring(axis)]
     if free:
-        message = (
-            f"has the bush of '{foot.name}' with {free[0]}, which the result has not: it would move freely"
-        )
-        raise ExportError(message, path=tree.path, valid="a model without bushes")
+        message = f"has the bush of '{foot.name}' with {free[0]}, which the result has not"
+        raise ExportError(f"{message}: it would move freely", path=tree.path, valid="a model without bushes")
     frame_a = f"{foot.name}_bushing_A"
     for old in list(tree.model):
-        ours = (
-            old.tag == tag("linear_bushing_rpy")
-            and (old.findtext(tag("bushing_frameA")) or "").strip() == frame_a
-        )
+        between = old.findtext(tag("bushing_frameA"), "").strip()
+        ours = old.tag == tag("linear_bushing_rpy") and between == frame_a
         if ours or old.get("name") == frame_a:
             tree.model.remove(old)
     pitch, roll, z = (foot.spring(axis) for axis in ("pitch", "roll", "z"))

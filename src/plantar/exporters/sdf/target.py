@@ -20,7 +20,7 @@ from plantar.exporters.sdf.from_urdf import tree_of
 from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
-from plantar.exporters.xml_file import numbers, to_text, vector
+from plantar.exporters.xml_file import child_of, numbers, to_text, vector
 from plantar.notes import Notes
 
 if TYPE_CHECKING:
@@ -119,9 +119,8 @@ def _add_chain(tree: SdfTree, foot: FootBush, bush: Array, springs: bool) -> ET.
         for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
             ET.SubElement(tensor, key).text = numbers([SOLE_INERTIA if key[1] == key[2] else 0.0])
         name = foot.joint(spring.axis)
-        joint = ET.SubElement(
-            tree.model, "joint", name=name, type="prismatic" if spring.axis == "z" else "revolute"
-        )
+        kind = "prismatic" if spring.axis == "z" else "revolute"
+        joint = ET.SubElement(tree.model, "joint", name=name, type=kind)
         ET.SubElement(joint, "parent").text = parent
         ET.SubElement(joint, "child").text = foot.link(spring.axis)
         axis = ET.SubElement(joint, "axis")
@@ -136,8 +135,7 @@ def _add_chain(tree: SdfTree, foot: FootBush, bush: Array, springs: bool) -> ET.
 
 
 def _dynamics(joint: ET.Element, spring: Spring | None) -> None:
-    axis = joint.find("axis")
-    axis = ET.SubElement(joint, "axis") if axis is None else axis
+    axis = child_of(joint, "axis")
     for old in axis.findall("dynamics"):
         axis.remove(old)
     if spring is not None:

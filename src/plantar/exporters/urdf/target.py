@@ -19,7 +19,7 @@ from plantar.exporters.poses import inverse, pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
-from plantar.exporters.xml_file import numbers, to_text, vector
+from plantar.exporters.xml_file import child_of, numbers, to_text, vector
 from plantar.notes import Notes
 
 if TYPE_CHECKING:
@@ -93,8 +93,7 @@ def _add_chain(tree: UrdfTree, foot: FootBush, bush: Array) -> ET.Element:
 
 
 def _dynamics(joint: ET.Element, spring: Spring) -> None:
-    element = joint.find("dynamics")
-    element = ET.SubElement(joint, "dynamics") if element is None else element
+    element = child_of(joint, "dynamics")
     element.set("damping", numbers([spring.damping]))
     element.set("friction", "0")
 

@@ -111,7 +111,7 @@ def _module(path: Path, robot: RobotModel | None) -> str:
     if path.name == "data.log":
         return "yarp"
     ending = next((e for e in sorted(FORMATS, key=len, reverse=True) if path.name.lower().endswith(e)), None)
-    mapped = robot is not None and any(key not in ("joints", "ports") for key in robot.columns)
+    mapped = robot is not None and not robot.columns.keys() <= {"joints", "ports"}
     if ending is not None:
         return "column_file" if FORMATS[ending] == "tables.table" and mapped else FORMATS[ending]
     from plantar.logs.readers.hrpsys import is_port_file

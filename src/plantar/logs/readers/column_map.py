@@ -97,9 +97,8 @@ def _port(entry: object, where: str, path: Path) -> Port:
             f"{where} is not a role", path=path, valid="a role, or {role, unit, sign, joints, take}"
         )
     joints, take = made.get("joints"), made.get("take")
-    if joints is not None and not (
-        isinstance(joints, list) and all(isinstance(name, str) for name in joints)
-    ):
+    listed = isinstance(joints, list) and all(isinstance(name, str) for name in joints)
+    if joints is not None and not listed:
         raise LogError(f"{where}.joints is not a list of names", path=path)
     if take is not None and not (
         isinstance(take, list) and len(take) == 2 and all(isinstance(i, int) and i >= 0 for i in take)
@@ -122,10 +121,8 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
     for key, entry in _for_each_joint(entries, list(table), robot.path).items():
         made = entry if isinstance(entry, Mapping) else {"from": entry}
         if made.get("from") in (None, "", []) or set(made) - ENTRY_KEYS:
-            message, valid = (
-                f"columns.{key} is no source",
-                "a column, a list of columns, or {from, unit, order, sign, at}",
-            )
+            valid = "a column, a list of columns, or {from, unit, order, sign, at}"
+            message = f"columns.{key} is no source"
             raise LogError(message, path=robot.path, value=str(entry)[:60], valid=valid)
         sources = made["from"] if isinstance(made["from"], list) else [made["from"]]
         values = np.column_stack([_source(table, source, key, path) for source in sources])
@@ -206,12 +203,11 @@ def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Ar
             raise LogError(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}")
         return table[names[source]]
     if not isinstance(source, str) or source not in table:
-        raise LogError(
+        message, valid = (
             f"is missing, or holds a text or nothing (columns.{key})",
-            path=path,
-            column=str(source),
-            valid=f"numbers in one of {nearest(str(source), names)}",
+            nearest(str(source), names),
         )
+        raise LogError(message, path=path, column=str(source), valid=f"numbers in one of {valid}")
     return table[source]
 
 

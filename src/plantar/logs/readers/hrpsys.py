@@ -61,9 +61,8 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
 def port_files(path: Path) -> tuple[str, dict[str, Path]]:
     """The recording's name and its files by port."""
     base = path.name.rpartition(".")[0]
-    beside = sorted(
-        file for file in path.parent.glob("*") if file.is_file() and file.name.rpartition(".")[0] == base
-    )
+    files = (file for file in path.parent.glob("*") if file.is_file())
+    beside = sorted(file for file in files if file.name.rpartition(".")[0] == base)
     return base, {file.suffix.removeprefix("."): file for file in beside[:PORT_LIMIT]}
 
 

@@ -189,9 +189,8 @@ class _Entries:
             width = self._widths.setdefault(key, next((_width(row) for row in rows if _width(row)), 0)) or 0
             self.limit.hold(NUMBER * width * len(rows))
             gap = [np.nan] * width
-            chunk[key] = np.array([_numbers(row, width) or gap for row in rows], dtype=np.float64).reshape(
-                len(rows), width
-            )
+            numbers = [_numbers(row, width) or gap for row in rows]
+            chunk[key] = np.array(numbers, dtype=np.float64).reshape(len(rows), width)
         chunk["\0size"] = np.zeros((len(self._pending), 0))
         self._chunks.append(chunk)
         self._pending, self._pending_size = [], 0

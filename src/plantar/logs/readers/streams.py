@@ -37,12 +37,17 @@ class Stream:
         return Stream(self.name, self.time[rows], columns)
 
 
+def in_order(time: Array, latest: float = np.inf) -> Mask:
+    """Which stamps (n,) come behind all those before them; none that is not finite or not below `latest`."""
+    known = np.abs(time) < latest
+    before = np.maximum.accumulate(np.where(known, time, -np.inf))
+    known[1:] &= time[1:] > before[:-1]
+    return np.asarray(known)
+
+
 def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
     """The stream without samples whose stamp is NaN, repeats or steps back. LogError: more than a few do."""
-    finite = np.isfinite(stream.time)
-    latest = np.maximum.accumulate(np.where(finite, stream.time, -np.inf))
-    keep = finite.copy()
-    keep[1:] &= stream.time[1:] > latest[:-1]
+    keep = in_order(stream.time)
     strays = np.flatnonzero(~keep)
     if strays.size == 0:
         return stream

@@ -105,20 +105,11 @@ class _Lines:
             raise LogError("holds no numbers", path=self.path, valid="one sample a line")
         values = np.concatenate(self._blocks)
         if self._bad:
-            where = (
-                f"line {self._first_bad} and {self._bad - 1} more"
-                if self._bad > 1
-                else f"line {self._first_bad}"
-            )
+            where = f"line {self._first_bad}" + (f" and {self._bad - 1} more" if self._bad > 1 else "")
             if self._bad > max(1, BAD_LINES * self._line):
                 raise LogError(f"{where} do not hold {self._width} numbers", path=self.path)
-            notes.append(
-                Note(
-                    "lines_broken",
-                    "warning",
-                    f"{self.path.name}: {where} left out: not {self._width} numbers",
-                )
-            )
+            text = f"{self.path.name}: {where} left out: not {self._width} numbers"
+            notes.append(Note("lines_broken", "warning", text))
         return values
 
 

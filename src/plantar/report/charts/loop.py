@@ -51,9 +51,8 @@ def _chart(result: FeetResult, tracks: Sequence[Track], axis: Axis) -> Chart | N
     if slope is not None:
         known, reach = np.isfinite(angle), np.array([x.low, x.high])
         # K passes through zero, what is nearest to a richer model through the middle of its motions.
-        through = (
-            (float(angle[known].mean()), float(measured[known].mean())) if name == NEAREST else (0.0, 0.0)
-        )
+        nearest = name == NEAREST
+        through = (float(angle[known].mean()), float(measured[known].mean())) if nearest else (0.0, 0.0)
         marks.append(line(x(reach), y(through[1] + 1e-3 * slope * (reach - through[0])), "straight"))
         legend.append((name, "straight"))
     steps = any((row.foot, row.axis) == (foot, axis) for row in result.stances)

@@ -19,12 +19,7 @@ if TYPE_CHECKING:
 
 
 def plot_torque(
-    result: FeetResult,
-    foot: str,
-    axis: str,
-    *,
-    motions: str | Sequence[str] = (),
-    axes: Axes | None = None,
+    result: FeetResult, foot: str, axis: str, *, motions: str | Sequence[str] = (), axes: Axes | None = None
 ) -> Axes:
     """Draw the torque of one foot over its bush's angle: measured in red, what the model says in blue.
 

@@ -83,9 +83,8 @@ def _plates(tracks: Sequence[Track], only_paper: bool) -> Iterator[Plate]:
         number = CROSS.get(motion.casefold())
         if role == "validate" and (number is not None or not only_paper):
             title = _title(number, f"Cross-validation of {motion}")
-            yield Plate(
-                _name(number, f"cross_{motion}"), number, title, colours, plots.torques(tracks, [motion])
-            )
+            drawing = plots.torques(tracks, [motion])
+            yield Plate(_name(number, f"cross_{motion}"), number, title, colours, drawing)
 
 
 def _unique(name: str, names: Counter[str]) -> str:

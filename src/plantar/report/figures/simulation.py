@@ -51,9 +51,8 @@ def replays(found: Sequence[Replayed], first: str) -> Drawing:
             panel.set_ylim(*_range(recorded[row]))
             if column == 0:
                 panel.set_ylabel(label)
-    handles = [
-        rows[0, 0].plot([], [], color=colour)[0] for colour in (RED, *(colours[n] for n in (first, *names)))
-    ]
+    drawn = (RED, *(colours[n] for n in (first, *names)))
+    handles = [rows[0, 0].plot([], [], color=colour)[0] for colour in drawn]
     figure.legend(
         handles, ["recorded", first, *names], frameon=False, ncols=len(handles), loc="outside upper right"
     )

@@ -20,7 +20,7 @@ from plantar.logs.readers.ros.mcap_file import read_mcap
 from plantar.logs.readers.ros.ros1_file import read_ros1
 from plantar.logs.readers.ros.sensor_topics import assign
 from plantar.logs.readers.ros.sqlite_bag import read_sqlite
-from plantar.logs.readers.ros.topics import Series, Topic
+from plantar.logs.readers.ros.topics import Series, Stamps, Topic
 from plantar.logs.readers.streams import Stream, merge
 from plantar.notes import Note, listing
 
@@ -119,7 +119,7 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
     return streams
 
 
-def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: list[str]) -> str | None:
+def _unusable(headers: list[Stamps], names: list[str]) -> str | None:
     """Why the header stamps cannot be used: not set, or clocks that never meet."""
     for stamps, name in zip(headers, names, strict=True):
         if stamps.size > 1 and np.count_nonzero(stamps == stamps[0]) > stamps.size // 2:
@@ -163,8 +163,7 @@ def _sensor(key: str, topic: Topic, seen: set[str]) -> Iterator[tuple[Messages, 
 
 
 def _without_orientation(series: Series) -> bool:
-    unknown = np.mean(
-        [np.mean(chunk[:, 0] == NO_ORIENTATION) for chunk in series.values["orientation_covariance"]]
-    )
+    covariances = series.values["orientation_covariance"]
+    unknown = np.mean([np.mean(chunk[:, 0] == NO_ORIENTATION) for chunk in covariances])
     empty = all(not chunk.any() for chunk in series.values["orientation"])
     return bool(unknown > 0.5 or empty)

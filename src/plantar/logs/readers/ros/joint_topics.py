@@ -47,12 +47,8 @@ def joint_rank(topic: Topic, robot: RobotModel | None) -> tuple[int, bool, bool,
     names = {name for series in topic.series.values() for name in series.names}
     if robot is not None:
         names &= {robot.joint_names_in_logs.in_log(joint) for joint in robot.joint_names}
-    return (
-        -len(names),
-        bool(WANTED.search(topic.name)),
-        topic.name.split("/")[-1] != "joint_states",
-        topic.name,
-    )
+    other = topic.name.split("/")[-1] != "joint_states"
+    return -len(names), bool(WANTED.search(topic.name)), other, topic.name
 
 
 def joint_columns(

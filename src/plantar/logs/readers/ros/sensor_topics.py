@@ -20,17 +20,8 @@ if TYPE_CHECKING:
 
 SAME_PLACE, SAME_AXES = 1.0, 0.01  # mm, rad: two frames of one sensor
 GENERIC = {
-    "",
-    "imu",
-    "data",
-    "data_raw",
-    "wrench",
-    "ft",
-    "ft_sensor",
-    "force_torque",
-    "force_torque_sensor",
-    "raw",
-}
+    "", "imu", "data", "data_raw", "wrench", "ft", "ft_sensor", "force_torque", "force_torque_sensor", "raw",
+}  # fmt: skip
 
 
 def assign(
@@ -46,11 +37,8 @@ def assign(
     wanted = {} if robot is None else dict(robot.topics)
     for name in wanted.values():
         if name not in known:
-            raise LogError(
-                f"has no topic '{name}' (topics in the robot file)",
-                path=path,
-                valid=", ".join(sorted(known)[:8]),
-            )
+            message = f"has no topic '{name}' (topics in the robot file)"
+            raise LogError(message, path=path, valid=", ".join(sorted(known)[:8]))
     joints = [t for t in known.values() if t.kind == JOINT_STATE]
     if "joints" in wanted:
         joints = [known[wanted["joints"]]]
@@ -60,11 +48,8 @@ def assign(
     for kind, prefix, sensors in ((IMU, "imu", _imus(robot)), (WRENCH, "wrench", _wrenches(robot))):
         free = [topic for topic in known.values() if topic.kind == kind]
         for sensor, placement in sensors.items():
-            topic = (
-                known[wanted[sensor]]
-                if sensor in wanted
-                else _guess(sensor, placement.link, free, only=len(sensors) == 1)
-            )
+            guess = _guess(sensor, placement.link, free, only=len(sensors) == 1)
+            topic = known[wanted[sensor]] if sensor in wanted else guess
             if topic is not None and topic.kind != kind:
                 message = f"topic '{topic.name}' (topics in the robot file) is no {kind}, but {topic.kind}"
                 raise LogError(message, path=path, valid=", ".join(other.name for other in free[:8]))

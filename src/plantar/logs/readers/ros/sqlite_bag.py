@@ -45,17 +45,15 @@ def _plain_tables(connection: sqlite3.Connection, path: Path) -> None:
     """LogError where the bag computes its rows: a view or a computed column may have no end."""
     for name in ("topics", "messages"):
         kinds = connection.execute("SELECT type FROM sqlite_master WHERE name = ?", (name,)).fetchall()
-        hidden = connection.execute(
-            "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden", (name,)
-        ).fetchone()
+        query = "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden"
+        hidden = connection.execute(query, (name,)).fetchone()
         if kinds not in ([], [("table",)]) or hidden != (0,):
             raise LogError(f"'{name}' is not a plain table", path=path, valid="a bag of rosbag2")
 
 
 def _channels(connection: sqlite3.Connection, topics: dict[str, Topic]) -> dict[int, Topic]:
-    rows = connection.execute(
-        "SELECT id, name, type, serialization_format FROM topics LIMIT 10000"
-    ).fetchall()
+    query = "SELECT id, name, type, serialization_format FROM topics LIMIT 10000"
+    rows = connection.execute(query).fetchall()
     found: dict[int, Topic] = {}
     for identity, name, kind, encoding in rows:
         plain = str(kind).replace("/msg/", "/")
@@ -72,9 +70,8 @@ def _messages(
     path: Path,
     notes: list[Note],
 ) -> None:
-    cursor = connection.execute(
-        "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp", (identity,)
-    )
+    query = "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp"
+    cursor = connection.execute(query, (identity,))
     while True:
         broken: sqlite3.Error | None = None
         rows: list[tuple[object, object]] = []

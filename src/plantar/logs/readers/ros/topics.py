@@ -8,15 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
-from plantar.logs.readers.ros.layouts import (
-    JOINT_STATE,
-    BrokenMessage,
-    Bytes,
-    Encoding,
-    Layout,
-    layout_of,
-    rows_of,
-)
+from plantar.logs.readers.ros import layouts
+from plantar.logs.readers.ros.layouts import JOINT_STATE, BrokenMessage, Bytes, Encoding, Layout
 
 LAYOUT_LIMIT = 200  # layouts of one topic: frames and joint lists change rarely
 Stamps = NDArray[np.int64]
@@ -66,7 +59,7 @@ class Topic:
             if size < 8:
                 self.broken += rows.size
                 continue
-            self._decode(rows_of(buffer, first[rows], int(size)), clock[rows])
+            self._decode(layouts.rows_of(buffer, first[rows], int(size)), clock[rows])
 
     def _decode(self, rows: Bytes, clock: Stamps) -> None:
         left = np.arange(len(rows))
@@ -74,7 +67,7 @@ class Topic:
             left = self._take(layout, rows, clock, left)
         while left.size:
             try:
-                layout = layout_of(self.kind, self.encoding, rows[left[0]].tobytes())
+                layout = layouts.layout_of(self.kind, self.encoding, rows[left[0]].tobytes())
             except BrokenMessage:
                 self.broken += 1
                 left = left[1:]

@@ -14,6 +14,7 @@ from plantar.files import sha256
 from plantar.logs.motion_log import COLUMN, MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.streams import STRAY_STAMPS, in_order
 from plantar.logs.readers.tables.csv_file import Choice, read_csv
 from plantar.logs.stretches import Stretches, stretches_of
 from plantar.notes import Note, listing
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
 OTHER_MARKS = (";", "\t", "#", "%")  # of columns that are not parted by commas, or of a remark before them
-STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is refused
 
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
@@ -91,13 +91,7 @@ def _is_parquet(path: Path) -> bool:
 
 
 def _columns(
-    path: Path,
-    limit: ReadLimit,
-    choose: Choice,
-    notes: list[Note],
-    rows: Mask | None = None,
-    *,
-    strict: bool,
+    path: Path, limit: ReadLimit, choose: Choice, notes: list[Note], rows: Mask | None = None, *, strict: bool
 ) -> dict[str, Array]:
     """The chosen columns; of Parquet, these `rows` of them alone."""
     if not _is_parquet(path):
@@ -131,16 +125,13 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
 
 def _increasing(time: Array, path: Path, notes: list[Note]) -> Mask:
     """Which rows to keep so that time increases: a few strays go with a note, more is an error."""
-    finite = np.isfinite(time) & (np.abs(time) < LATEST)
-    latest = np.maximum.accumulate(np.where(finite, time, -np.inf))
-    keep = finite.copy()
-    keep[1:] &= time[1:] > latest[:-1]
+    keep = in_order(time, LATEST)
     strays = np.flatnonzero(~keep)
     if strays.size == 0:
         return keep
     first = int(strays[0])
     at = float(time[first - 1]) if first else None
-    if strays.size > max(1, STRAY_ROWS * time.size):
+    if strays.size > max(1, STRAY_STAMPS * time.size):
         message = f"does not increase in {strays.size} of {time.size} rows, first here"
         valid = "seconds that increase from row to row, in double precision"
         raise LogError(message, path=path, column="time", time=at, value=float(time[first]), valid=valid)
