@@ -72,18 +72,18 @@ def test_a_memory_that_another_axis_shows_is_taken(
     assert "other axes" in found.reason
 
 
-def changed(fit: AxisFit, **scores: object) -> AxisFit:
+def changed(found: AxisFit, **scores: object) -> AxisFit:
     """With no caution, and something else said of each model but spring and damper."""
-    assert fit.choice is not None
+    assert found.choice is not None
     ranking = tuple(
         replace(
             score,
             chosen=score.model.name == "kelvin_voigt",
             **({} if score.model.name == "kelvin_voigt" else scores),
         )
-        for score in fit.choice.ranking
+        for score in found.choice.ranking
     )
-    return replace(fit, choice=replace(fit.choice, caution=None, ranking=ranking))
+    return replace(found, choice=replace(found.choice, caution=None, ranking=ranking))
 
 
 def of(one: AxisFit, other: AxisFit, recordings: list[Recording], *, steps: bool = False) -> AxisFit:
@@ -238,3 +238,91 @@ def test_where_the_other_axis_bends_the_rubber_and_shows_no_memory_small_motions
     found = with_shared_hysteresis({"one": one})["one"].fits[axis]
     assert found.choice is not None
     assert (found.choice.caution is None) == dropped
+
+
+@pytest.mark.parametrize(
+    ("gains", "scores", "steps", "hinted"),
+    [
+        ((0.05, 0.15, 0.17), {}, True, True),
+        ((0.05, 0.15, 0.17), {}, False, False),  # feet that stand show a memory by themselves
+        ((0.15, 0.17), {}, True, False),  # two may do so by chance
+        ((0.05, 0.06, 0.08), {}, True, False),
+        ((-0.01, 0.2, 0.2), {}, True, False),  # one axis has none
+        ((0.05, 0.15, 0.17), {"refused": "is hardly reached"}, True, False),
+    ],
+)
+def test_a_memory_that_every_axis_of_a_walk_hints_at_makes_a_caution(
+    recordings: list[Recording],
+    spring: AxisFit,
+    gains: tuple[float, ...],
+    scores: dict[str, object],
+    steps: bool,
+    hinted: bool,
+) -> None:
+    assert spring.choice is not None
+    plain = next(score for score in spring.choice.ranking if score.model.name == "kelvin_voigt")
+    fits = [
+        changed(spring, **{"refused": None, "held_out_rms": (1 - gain) * plain.held_out_rms, **scores})
+        for gain in gains
+    ]
+    feet = {str(place): foot(fit, recordings, steps=steps) for place, fit in enumerate(fits)}
+    for one in with_shared_hysteresis(feet).values():
+        choice = one.fits["pitch"].choice
+        assert choice is not None
+        assert (choice.caution or "").startswith("hysteresis predicts held-out steps better") is hinted
+        assert not hinted or "by 12 % together" in str(choice.caution)
+
+
+def test_axes_that_miss_more_weigh_more_in_a_hint(recordings: list[Recording], spring: AxisFit) -> None:
+    """3 of 30, 0.3 of 1 and of 1: together what the first gains, 10 %, and a little."""
+    assert spring.choice is not None
+
+    def missing(plain: float, memory: float) -> AxisFit:
+        fit = changed(spring, refused=None, held_out_rms=memory)
+        assert fit.choice is not None
+        ranking = tuple(
+            replace(score, held_out_rms=plain) if score.model.name == "kelvin_voigt" else score
+            for score in fit.choice.ranking
+        )
+        return replace(fit, choice=replace(fit.choice, ranking=ranking))
+
+    def caution(first: float) -> str | None:
+        fits = [missing(30.0, first), missing(1.0, 0.7), missing(1.0, 0.7)]
+        feet = {str(place): foot(fit, recordings, steps=True) for place, fit in enumerate(fits)}
+        choice = with_shared_hysteresis(feet)["1"].fits["pitch"].choice
+        assert choice is not None
+        return choice.caution
+
+    assert caution(29.0) is None
+    assert "by 10 % together" in str(caution(26.9))
+
+
+@pytest.mark.parametrize(("softer", "hinted"), [(0.04, False), (0.06, True)])
+def test_a_memory_that_leaves_stiffness_as_it_is_is_no_hint(
+    recordings: list[Recording], spring: AxisFit, softer: float, hinted: bool
+) -> None:
+    assert spring.choice is not None
+    plain = next(score for score in spring.choice.ranking if score.model.name == "kelvin_voigt")
+    memory = next(score for score in spring.choice.ranking if score.model.name == "elastoplastic")
+    values = memory.fit.values.copy()
+    values[0] = (1 - softer) * plain.fit.values[0]
+    fit = changed(
+        spring, refused=None, held_out_rms=0.8 * plain.held_out_rms, fit=replace(memory.fit, values=values)
+    )
+    feet = {name: foot(fit, recordings, steps=True) for name in ("one", "two", "three")}
+    choice = with_shared_hysteresis(feet)["one"].fits["pitch"].choice
+    assert choice is not None
+    assert (choice.caution is not None) is hinted
+
+
+def test_an_axis_that_a_spring_explains_denies_a_hint(recordings: list[Recording], spring: AxisFit) -> None:
+    assert spring.choice is not None
+    rms = 0.8 * max(score.held_out_rms for score in spring.choice.ranking)
+    hints = changed(spring, refused=None, held_out_rms=rms)
+    fits = dict.fromkeys(("one", "two", "three"), hints)
+    feet = {name: foot(fit, recordings, steps=True) for name, fit in fits.items()}
+    denied = feet | {"four": foot(replace(spring, choice=None), recordings, steps=True)}
+    for given, hinted in ((feet, True), (denied, False)):
+        choice = with_shared_hysteresis(given)["one"].fits["pitch"].choice
+        assert choice is not None
+        assert (choice.caution is not None) is hinted

@@ -16,17 +16,25 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES
 from plantar.feet.assess.verdicts import WEAK_WIDTH
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
-from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, SMALL, has_memory, only_too_small, slope_share
+from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, SMALL, has_memory, only_too_small, rival, slope_share
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.regression.axis import AxisFit
-from plantar.model_selection.selection import ModelChoice, ModelScore
+from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 
 # Times the angle at which elements of other axes slip: in motions that bend an axis less, an element is a spring as
 # well, and one that was found there may be taken for none again.
 ALIKE = 2.0
+FEWEST_HINTS = 3  # axes that may speak for a memory together: of two, both do so by chance in some walks
+WORTH_A_HINT = (
+    0.05  # of the stiffness, that a memory takes off it on average: less is no more than other errors do
+)
+HINTED = (
+    "hysteresis predicts held-out steps better about every axis, by {:.0f} % together, about none by enough to be "
+    "taken for certain; with hysteresis the stiffness is smaller (record longer steps, or stand and sway)"
+)
 
 
 def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
@@ -39,11 +47,15 @@ def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFo
     shown = {fit.model.name for fit in every if has_memory(fit.model)}
     share = max((slope_share(fit) for fit in every), default=0.0)
     slips = min((_slip_angle(fit) for fit in every), default=np.inf)
+    hinted = None if shown else _hinted(feet)
     found = {}
     for foot, one in feet.items():
         fits = dict(one.fits)
         for axis, fit in one.fits.items():
             if fit.choice is None or isinstance(fit.model, Hysteretic) or axis in one.given_up:
+                continue
+            if hinted is not None and fit.choice.caution is None and _steps(one):
+                fits[axis] = replace(fit, choice=replace(fit.choice, caution=hinted))
                 continue
             if not shown:
                 fits[axis] = _without_needless_caution(fit, fit.choice, one)
@@ -90,6 +102,27 @@ def _without_needless_caution(fit: AxisFit, choice: ModelChoice, foot: FittedFoo
         if axis != fit.axis and axis not in foot.given_up
     )
     return replace(fit, choice=replace(choice, caution=None)) if shows_none else fit
+
+
+def _hinted(feet: Mapping[str, FittedFoot]) -> str | None:
+    """A caution where every axis of the feet that step is predicted better by a memory, each by too little to be
+    believed there and all together by enough: one rubber's memory, and not four accidents.
+
+    Not where stiffness stays what it is, nor where a spring explains all of an axis, about which no model was tried.
+    """
+    fits = [fit for one in feet.values() if _steps(one) for fit in one.fits.values()]
+    missed, softer = list[tuple[float, float]](), list[float]()
+    for fit in fits:
+        found = rival(fit)
+        if fit.choice is None or found is None or found.refused is not None:
+            return None
+        spring = next(score for score in fit.choice.ranking if isinstance(score.model, KelvinVoigt))
+        missed.append((found.held_out_rms, spring.held_out_rms))
+        softer.append(1 - float(found.fit.values[0] / spring.fit.values[0]))
+    if len(fits) < FEWEST_HINTS or np.mean(softer) < WORTH_A_HINT:
+        return None
+    beside, alone = np.linalg.norm(missed, axis=0)
+    return HINTED.format(100 * (1 - beside / alone)) if beside < (1 - LEAST_GAIN) * alone else None
 
 
 def _known(fit: AxisFit) -> bool:
