@@ -38,6 +38,33 @@ void a_probe_that_shows_little_may_be_sure() {
   check::that(probed(watch, -3.3, 2.0) == Verdict::impossible, "far below zero");
 }
 
+// Eight rows up to 10 mrad show a stiffness to noise over 6.5 N·m.
+void a_probe_that_shows_too_little_says_nothing() {
+  for (const double share : {0.13, 0.17}) {
+    ChangeWatch watch;
+    probed(watch, -0.4, share * STIFFNESS * 0.01 / 8 * std::sqrt(42.0));
+    check::that((watch.softer() > 0.0) == (share < 0.15), "a deviation of 15 % of the stiffness");
+  }
+}
+
+// Of normal deviations: how probes scatter before any was seen, the probe's own, and that of what was learnt.
+void what_a_probe_says_is_a_likelihood() {
+  constexpr double AWAY = -0.3, OWN = 0.06, KNOWN = 0.08, CHANGED = -0.4;
+  const auto bent = [](ChangeWatch& watch, double away, double own) {
+    for (int i = 0; i < 8; ++i) watch.add(1.0, 0.0, 0.0, 0.00125 * i, 0.0, STIFFNESS * away * 0.00125 * i, ROW);
+    watch.judge(STIFFNESS, KNOWN * STIFFNESS, own * STIFFNESS * 0.00125 * std::sqrt(42.0));
+  };
+  ChangeWatch watch, sure;
+  bent(watch, AWAY, OWN);
+  const double variance = 0.1 * 0.1 + OWN * OWN + KNOWN * KNOWN;
+  check::near(watch.softer(), CHANGED * (AWAY - 0.5 * CHANGED) / variance, 1e-3, "for a ground that is softer");
+  check::that(watch.stiffer() == 0.0, "not stiffer");
+  bent(watch, -AWAY, OWN);
+  check::that(watch.softer() == 0.0 && watch.stiffer() > 0.0, "a contrary one speaks against it");
+  bent(sure, -0.9, 0.01);
+  check::near(sure.softer(), 7.5, 1e-9, "a single probe says no more");
+}
+
 // After unclear probes, and after the first one of the change itself.
 void two_clear_probes_are_enough() {
   ChangeWatch watch;
@@ -107,6 +134,8 @@ void what_no_line_explains_is_no_ground() {
 }
 
 void run() {
+  what_a_probe_says_is_a_likelihood();
+  a_probe_that_shows_too_little_says_nothing();
   a_short_probe_speaks();
   a_probe_that_shows_little_may_be_sure();
   two_clear_probes_are_enough();

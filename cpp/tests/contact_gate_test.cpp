@@ -54,7 +54,44 @@ void short_stances_settle_sooner() {
   check::near(gate.settling(), 0.25, 1e-9, "a quarter of a second at most");
 }
 
+// By three tenths of what it was off.
+void one_stance_changes_what_is_usual() {
+  ContactGate gate(WEIGHT, false);
+  double usual = FIRST_STANCE;
+  for (int step = 0; step < 4; ++step) {
+    after(gate, 300.0, 0.6), after(gate, 0.0, 0.4);
+    usual = 0.7 * usual + 0.3 * 0.6;
+    check::near(gate.settling(), 0.1 * usual, 2e-3, "a tenth of what is usual by now");
+  }
+}
+
+// Its zero may be off: a foot that reads little while others carry the robot is in the air.
+void a_foot_without_a_zero_lifts_where_others_carry() {
+  const auto lifts = [](double load, double others, double seconds, bool known) {
+    ContactGate gate(WEIGHT, false);
+    after(gate, 0.5 * WEIGHT, 1.0);
+    for (int tick = 0; tick < static_cast<int>(seconds / PERIOD); ++tick)
+      gate.step(load * WEIGHT, others * WEIGHT, true, known, PERIOD);
+    return gate.contact() == ContactState::air;
+  };
+  check::that(lifts(0.15, 0.75, 0.15, false), "a tenth of a second and the filter's time");
+  check::that(!lifts(0.15, 0.75, 0.1, false), "sooner it may be a blow");
+  check::that(!lifts(0.15, 0.75, 0.5, true), "its zero is known");
+  check::that(!lifts(0.15, 0.65, 0.5, false), "others carry less");
+  check::that(!lifts(0.25, 0.75, 0.5, false), "it reads more");
+  ContactGate gate(WEIGHT, false);
+  for (int tick = 0; tick < 500; ++tick) gate.step(0.15 * WEIGHT, 0.75 * WEIGHT, true, false, PERIOD);
+  check::that(gate.contact() == ContactState::air, "nor does it land so");
+  ContactGate twice(WEIGHT, false);
+  after(twice, 0.5 * WEIGHT, 1.0);
+  for (int tick = 0; tick < 300; ++tick)
+    twice.step((tick / 75 % 2 ? 0.5 : 0.15) * WEIGHT, 0.75 * WEIGHT, true, false, PERIOD);
+  check::that(twice.contact() == ContactState::stance, "two that are short are none that is long");
+}
+
 void run() {
+  one_stance_changes_what_is_usual();
+  a_foot_without_a_zero_lifts_where_others_carry();
   a_foot_that_stands_from_the_first_reading_lands_with_it();
   between_both_shares_it_stays_what_it_was();
   a_blow_of_a_tick_is_no_landing();

@@ -43,6 +43,15 @@ void run() {
       check::that(std::abs(element.state() - rubber.state) <= element.gap() + 1e-3, "behind the landing");
       check::that(element.gap() < 0.25, "as well as the attitude leans");
     }
+  // An angle that turns round between two samples, of which each is the mean of both ends of its period.
+  for (const double late : {0.3, 0.5, 0.8}) {
+    constexpr double DT = 0.01, BENDS = -40.0;  // s, rad/s²
+    const auto at = [late](double t) { return 0.02 + 0.5 * BENDS * std::pow(t - late * DT, 2); };
+    const auto mean = [at](double t) { return 0.5 * (at(t - 0.5 * DT) + at(t + 0.5 * DT)); };
+    const double before = BENDS * -late * DT, rate = BENDS * (1.0 - late) * DT;
+    check::that(plantar::turned(before, rate) && !plantar::turned(rate, rate), "it turns where its rates differ in sign");
+    check::near(plantar::turning_angle(mean(0.0), before, rate, DT), 0.02, 1e-12, "as far as it went");
+  }
   ElementState unknown;
   unknown.begin(SLIP, 0.003);
   check::near(unknown.gap(), 1.0, 1e-12, "nobody knows");

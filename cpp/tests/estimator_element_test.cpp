@@ -110,6 +110,55 @@ void is_known_from_the_first_landing_on() {
   check::near(found.pitch.damping.value, DAMPING, 1e-3 * DAMPING, "damping from the first steps");
 }
 
+// Behind some seconds of standing, steps whose stances never swing an element from end to end: what it does behind a
+// landing hangs on how the foot lifted. In the air spring and element balance each other, and the element sticks on its
+// way there.
+struct Steps {
+  static constexpr double STANDS = 12.0, STANCE = 1.0, STEP = 1.4;  // s
+  static constexpr int NUMBER = 30, PIECES = 4000;
+  double air[NUMBER + 1] = {};  // the bush's angle before each stance [rad]
+
+  Steps() {
+    double state = 0.0;
+    const auto stood = [this](int i) { return (*this)(STANDS * i / (10.0 * PIECES)); };
+    for (int i = 1; i < 10 * PIECES; ++i)
+      state = std::clamp(state + (stood(i) - stood(i - 1)) / SLIP_ANGLE, -1.0, 1.0);
+    for (int k = 0; k < NUMBER; ++k) {
+      for (int i = 1; i <= PIECES; ++i)
+        state = std::clamp(state + (stance(k, i / double(PIECES)) - stance(k, (i - 1) / double(PIECES))) / SLIP_ANGLE,
+                           -1.0, 1.0);
+      const double stiff = SLIP_TORQUE / SLIP_ANGLE, torque = STIFFNESS * lifts(k) + SLIP_TORQUE * state;
+      air[k + 1] = lifts(k) - torque / (STIFFNESS + stiff);
+      state += (air[k + 1] - lifts(k)) / SLIP_ANGLE;
+    }
+  }
+  static double lifts(int k) { return k % 2 ? 0.013 : 0.022; }
+  static double eased(double x) { return x * x * (3.0 - 2.0 * x); }
+  double stance(int k, double share) const {
+    const double sways = std::sin(std::numbers::pi * share);
+    return air[k] + (lifts(k) - air[k]) * eased(share) + 0.005 * sways * sways * std::sin(11.0 * share);
+  }
+  double operator()(double t) const {
+    if (t < STANDS) return 0.02 * std::sin(std::numbers::pi * t) + 0.01 * std::sin(3.0 * std::numbers::pi * t);
+    const int k = static_cast<int>((t - STANDS) / STEP);
+    const double since = t - STANDS - k * STEP;
+    if (since < STANCE) return stance(k, since / STANCE);
+    return lifts(k) + (air[k + 1] - lifts(k)) * eased(std::min((since - STANCE) / (0.5 * (STEP - STANCE)), 1.0));
+  }
+};
+
+void is_followed_through_the_air() {
+  const Steps steps;
+  const auto load = [](double t) {
+    const double since = t - Steps::STANDS;
+    return since < 0.0 || std::fmod(since, Steps::STEP) < Steps::STANCE ? (0.7 + 0.1 * std::sin(7.0 * t)) * WEIGHT : 0.0;
+  };
+  const FootEstimate found = after(Steps::STANDS + 29.9 * Steps::STEP, 400.0, false, 0.0, steps, load);
+  check::near(found.pitch.stiffness.value, STIFFNESS, 1e-3 * STIFFNESS, "stiffness of steps");
+  // A state that is taken for another one is an offset: here none, as well as an attitude's lean lets anyone know.
+  check::near(found.pitch.offset, 0.0, 0.4 * SLIP_TORQUE, "no offset of steps");
+}
+
 // The foot stands on while its sensor says nothing: its element is where nobody knows, not where a lift would leave it.
 void a_pause_is_no_lift() {
   const auto swings = [](double t) { return t < 42.0 ? 0.02 * std::sin(2.0 * t) : 0.006 * std::sin(2.0 * t); };
@@ -121,6 +170,7 @@ void a_pause_is_no_lift() {
 
 void run() {
   a_pause_is_no_lift();
+  is_followed_through_the_air();
   follows_what_turns_between_samples();
   knows_nothing_of_a_foot_that_always_stands();
   is_known_from_the_first_landing_on();

@@ -191,15 +191,30 @@ void broken_models_are_refused() {
     }
     check::that(refused, "a broken model file");
   }
-  bool refused = false;
-  try {
-    EstimatorModel model = two_feet();
-    model.weight = 0.0;
-    const FootEstimator estimator(model);
-  } catch (const std::invalid_argument&) {
-    refused = true;
-  }
-  check::that(refused, "a robot without weight");
+  const auto refused = [](const auto& change) {
+    try {
+      EstimatorModel model = two_feet();
+      change(model);
+      const FootEstimator estimator(model);
+    } catch (const std::invalid_argument&) {
+      return true;
+    }
+    return false;
+  };
+  check::that(!refused([](EstimatorModel&) {}), "a robot");
+  check::that(refused([](EstimatorModel& model) { model.weight = 0.0; }), "one without weight");
+  check::that(refused([](EstimatorModel& model) { model.cutoff = 0.0; }), "rows of nothing");
+  for (const double delay : {0.11, -0.11, std::nan("")})
+    check::that(refused([delay](EstimatorModel& model) { model.wrench_delay = delay; }), "a delay beyond a tenth of a second");
+  check::that(refused([](EstimatorModel& model) { model.feet.clear(); }), "no feet");
+  check::that(refused([](EstimatorModel& model) { model.feet[1].polygon.pop_back(), model.feet[1].polygon.pop_back(); }),
+              "a sole of two corners");
+  for (const int joint : {-1, 1})
+    check::that(refused([joint](EstimatorModel& model) {
+                  model.feet[0].path.emplace_back();
+                  model.feet[0].path.back().joint = joint;
+                }),
+                "a joint that is not listed");
 }
 
 void run() {

@@ -1,5 +1,4 @@
-// What keeps readings from being believed, each watch by itself: zeros from the air, slides, edges, delays, loads and
-// noise.
+// What keeps readings from being believed, each watch by itself: zeros from the air, edges, delays, loads and noise.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +11,6 @@
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
 #include "online/shaking.hpp"
-#include "online/slip_gate.hpp"
 
 namespace gates_test {
 
@@ -50,40 +48,6 @@ void a_swing_that_touches_is_none() {
     zero.landed();
     check::that(zero.known() == (touch < 1.0), "calm is what changes by less than a twentieth of the weight");
   }
-}
-
-// Of a right sole beside a left one; whether a slide was sure behind the filter's start.
-template <typename Heading>
-bool slides(double left, const Heading& right) {
-  SlipGate gate;
-  bool sure = false;
-  for (int tick = 0; tick < 3000; ++tick) {
-    const double time = PERIOD * tick, turned = right(time);
-    const double heading = std::remainder(turned, 2.0 * std::numbers::pi);
-    sure = gate.step({0.0, 0.1, left}, {0.0, -0.1, heading}, PERIOD) == SlipGate::Verdict::sure || sure;
-  }
-  return sure;
-}
-
-void a_heading_that_passes_half_a_turn_is_no_slide() {
-  for (const double back : {3.1416, -3.1416}) {
-    const auto sways = [back](double time) { return back + 0.005 * std::sin(2.0 * time); };
-    const auto turns = [back](double time) { return back + 0.1 * std::clamp(time - 1.0, 0.0, 1.0); };
-    check::that(!slides(back, sways), "a robot that faces back");
-    check::that(slides(back, turns), "one sole that turns");
-  }
-}
-
-// Slower than any slide, for longer than a slide takes.
-void a_creep_is_no_slide() {
-  SlipGate gate;
-  bool told = false;
-  for (int tick = 0; tick < 6000; ++tick) {
-    const double time = PERIOD * tick, crept = 0.0019 * std::clamp(time - 4.0, 0.0, 0.8);
-    const auto verdict = gate.step({0.0, 0.1, 0.0}, {crept, -0.1, 0.0}, PERIOD);
-    told = told || (time > 1.0 && verdict != SlipGate::Verdict::none);
-  }
-  check::that(!told, "a creep of two millimetres a second");
 }
 
 // At the band's edge each of two poles lets half of the power of what is quick through.
@@ -153,6 +117,20 @@ void a_delay_stays_in_doubt_until_it_is_excluded() {
   check::that(!late(0.0035, 0.001), "it cannot be");
 }
 
+// Whatever its sign; several feet's by their weights, and what was told by its own deviation.
+void delays_add_by_their_weights() {
+  const auto late = [](Lateness seen, double told) { return DelayWatch().late(seen, told, PERIOD); };
+  Lateness both = Lateness::of(0.016, 0.002);
+  both += Lateness::of(0.004, 0.004);
+  check::near(both.sum / both.weight, (4.0 * 0.016 + 0.004) / 5.0, 1e-12, "the mean by squares of half widths");
+  check::near(1.0 / both.weight, 4e-6 * 16e-6 / 20e-6, 1e-15, "and its half width's square");
+  check::that(Lateness::of(0.01, 0.0).weight == 0.0 && !late(Lateness{}, 0.0), "nothing is seen");
+  check::that(late(Lateness::of(-0.012, 0.001), 0.0), "earlier");
+  check::that(late(Lateness::of(0.0105, 0.003), 0.002) && !late(Lateness::of(0.0095, 0.003), 0.002),
+              "twice the half width of both");
+  check::that(!DelayWatch().late(Lateness::of(0.012, 0.001), 0.0, 0.015), "less than a period of slow samples");
+}
+
 void an_unknown_zero_may_make_a_load_differ() {
   const auto differs = [](double share, int unknown) {
     WeightWatch watch(WEIGHT);
@@ -178,6 +156,22 @@ void noise_of_a_rate_is_that_of_its_angle() {
   const double edge = 2.0 * std::numbers::pi * CUTOFF;
   check::that(noise.of_angle[0] > 0.0, "there is noise");
   check::near(noise.of_rate[0] / noise.of_angle[0], edge * edge / 3.0, 1e-9, "a third of the cutoff's square");
+  // What passes of white noise is the cutoff's share of all frequencies, of every signal.
+  FootNoise all(CUTOFF), slow(CUTOFF);
+  WhiteNoise alone;
+  for (int tick = 0; tick < 5000; ++tick) {
+    const double read = std::sin(1e5 * tick);
+    alone.see(read, PERIOD);
+    const FootNoise::Signals now = {{read, 2.0 * read}, {3.0 * read, 4.0 * read}, {5.0 * read, 6.0 * read, 7.0 * read}, true};
+    all.follow(now, PERIOD, PERIOD), slow.follow(now, PERIOD, 0.021);
+  }
+  const double passes = 2.0 * CUTOFF * PERIOD * alone.variance();
+  for (int a = 0; a < 2; ++a) {
+    check::near(all.of_angle[a], std::pow(1.0 + a, 2) * passes, 1e-9 * passes, "of angles");
+    check::near(all.of_rate[a], std::pow(3.0 + a, 2) * passes, 1e-9 * passes, "of rates");
+    check::that(slow.of_angle[a] == 0.0 && slow.of_rate[a] == 0.0, "samples that are too slow show none");
+  }
+  for (int i = 0; i < 3; ++i) check::near(all.of_force[i], std::pow(5.0 + i, 2) * passes, 1e-9 * passes, "of forces");
 }
 
 // A spring and a damper, swayed by `size` [rad]: whether a memory is excluded, though the rows have none.
@@ -217,13 +211,12 @@ void a_memory_is_excluded_by_motions_that_would_have_shown_it() {
 void run() {
   a_zero_is_the_mean_of_swings_without_their_ends();
   a_swing_that_touches_is_none();
-  a_heading_that_passes_half_a_turn_is_no_slide();
-  a_creep_is_no_slide();
   a_foot_is_shaken_by_what_is_quicker_than_any_load();
   what_is_quicker_than_the_band_is_no_lean();
   an_edge_is_told_from_where_its_visit_began();
   the_middle_of_a_small_sole_is_not_its_edge();
   a_delay_stays_in_doubt_until_it_is_excluded();
+  delays_add_by_their_weights();
   an_unknown_zero_may_make_a_load_differ();
   noise_of_a_rate_is_that_of_its_angle();
   a_memory_is_excluded_by_motions_that_would_have_shown_it();

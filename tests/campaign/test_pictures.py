@@ -1,11 +1,14 @@
-"""Pictures of postures: the robot stands on the floor, the raised leg is raised."""
+"""Pictures of postures: the robot stands on the floor, the raised leg is raised; what is drawn of which motions."""
 
 from __future__ import annotations
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from plantar.campaign.pictures import boxes, look_of
+from plantar.campaign import pictures
+from plantar.campaign.pictures import boxes, look_of, side_of
 from plantar.twin.play import planned
 from plantar.twin.robots import hrp2
 
@@ -22,3 +25,42 @@ def test_postures_stand_on_the_floor() -> None:
         if np.ptp(box.corners[:, 0]) == pytest.approx(0.2172, abs=0.01)
     }
     assert feet["right"] > 0.05 > feet["left"]  # the right leg is raised
+
+
+def test_figures_are_drawn_of_the_motions_that_were_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
+    def postures(robot: object, named: list[tuple[str, str]], number: int, title: str) -> tuple[object, ...]:
+        return number, [motion for motion, _ in named]
+
+    monkeypatch.setattr(pictures, "_postures", postures)
+    monkeypatch.setattr(pictures, "_locus", lambda campaign, motion, number, letter: (number, letter, motion))
+    monkeypatch.setattr(pictures, "_simulated", lambda replays, guess: ("simulator", replays))
+
+    def plates(logs: list[str], replays: list[str]) -> list[object]:
+        return pictures.plates(  # type: ignore[return-value]
+            SimpleNamespace(robot=None, logs=dict.fromkeys(logs), replays=replays, replayed={})  # type: ignore[arg-type]
+        )
+
+    assert plates([], []) == []
+    assert plates(["Tilt3", "Tilt1", "Squat"], []) == [
+        (3, ["Tilt1", "Tilt3"]),
+        (4, "a", "Tilt1"),
+        (4, "b", "Tilt3"),
+    ]
+    monkeypatch.setattr(pictures, "best_guess", lambda replayed: "soft")
+    sways = plates(["Manual_left_roll"], ["one"])
+    assert sways == [(5, ["Manual_left_roll"]), (6, "b", "Manual_left_roll"), ("simulator", ["one"])]
+
+
+@pytest.mark.parametrize(
+    ("body", "side"),
+    [
+        ("RLEG_LINK5", "right"),
+        ("LARM_LINK2", "left"),
+        ("WAIST", ""),
+        ("ROOT", ""),
+        ("LIDAR", ""),
+        ("HEAD", ""),
+    ],
+)
+def test_limbs_have_a_side_and_the_trunk_has_none(body: str, side: str) -> None:
+    assert side_of(body) == side

@@ -91,3 +91,32 @@ def test_where_nothing_is_seen_the_drift_goes_on() -> None:
     value, deviation = fitted(velocity, jump)
     assert np.all(np.abs(value - drift) < 4.5 * deviation[:, None])
     assert deviation[TIME.searchsorted(10.5)] > 2 * deviation[TIME.searchsorted(20.0)]
+
+
+def test_what_a_velocity_shows_counts_as_unrest_of_the_same_square() -> None:
+    """To and fro by five deviations on both axes, about a drift that is known: as unrest of their mean square."""
+    swing = 5 * NOISE * np.where(np.arange(TIME.size) % 2, 1.0, -1.0)[:, None] * np.ones(2)
+    arguments = (np.zeros(TIME.size), WANDER, NOISE, 1.0, PERIOD)
+    shown = fit_drift(swing, NO_COLUMNS, np.zeros(TIME.size), *arguments).deviation
+    told = fit_drift(np.zeros_like(swing), NO_COLUMNS, np.full(TIME.size, 25.0), *arguments).deviation
+    calm = fit_drift(np.zeros_like(swing), NO_COLUMNS, np.zeros(TIME.size), *arguments).deviation
+    middle = slice(200, -200)
+    np.testing.assert_allclose(shown[middle], told[middle], rtol=0.02)
+    assert np.all(told > 1.3 * calm)
+
+
+def test_samples_that_repeat_each_other_weigh_as_their_independent_share() -> None:
+    """A quarter of them: as so many of twice the noise."""
+    rest, still = np.zeros((TIME.size, 2)), np.zeros(TIME.size)
+    repeated = fit_drift(rest, NO_COLUMNS, still, still, WANDER, NOISE, 0.25, PERIOD).deviation
+    noisier = fit_drift(rest, NO_COLUMNS, still, still, WANDER, 2 * NOISE, 1.0, PERIOD).deviation
+    np.testing.assert_allclose(repeated, noisier, rtol=1e-9)
+
+
+def test_of_what_is_never_seen_only_a_robots_speed_is_known() -> None:
+    """A meter a second and 0.3 m/s² of slope, at first; both go on."""
+    still = np.zeros(TIME.size)
+    deviation = fit_drift(
+        np.full((TIME.size, 2), np.nan), NO_COLUMNS, still, still, WANDER, NOISE, 1.0, PERIOD
+    ).deviation
+    np.testing.assert_allclose(deviation, np.hypot(1.0, 0.3 * TIME), rtol=0.01)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import pytest
 from biped import TRUTH, BushModel, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, STANDS, STEP, ZERO, noisy, stepping
+from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.place.place_notes import BUSH_TURNED
 from plantar.feet.prepare_log import prepare
@@ -161,3 +164,26 @@ def test_a_force_sensor_that_is_turned_is_found_from_steps(robot: RobotModel) ->
     for axis in ("pitch", "roll"):
         told, truth = (found[name].parameter("left", axis, "stiffness").value for name in ("read", "exact"))
         assert told == pytest.approx(truth, rel=0.004)
+
+
+@pytest.mark.parametrize("steps", [False, True])
+def test_in_stances_only_a_spring_and_one_that_slips_are_tried(
+    steps: bool, robot: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A stance is too short to tell more models apart, and there another model has to gain more."""
+    tried: list[tuple[set[str], float]] = []
+
+    def told(data_sets: object, models: Sequence[Any], *_: object, least_gain: float, **__: object) -> None:
+        tried.append(({model.name for model in models}, least_gain))
+        raise StopIteration
+
+    monkeypatch.setattr("plantar.feet.fit.axis_fit.choose_model", told)
+    monkeypatch.setattr("plantar.feet.fit.axis_fit.FULLY_EXPLAINED", 1.0)
+    logs = [noisy(record(sway(f"walk_{seed}", seed, duration=12.0)), seed) for seed in (1, 2)]
+    made = [prepare(robot, evenly_sampled(stepping(log) if steps else log), "fit") for log in logs]
+    with pytest.raises(StopIteration):
+        fit_axis(made, "left", "pitch", FeetSettings())
+    usual = {"kelvin_voigt", "elastoplastic"}
+    ((names, gain),) = tried
+    assert names == usual if steps else names > usual
+    assert gain == (0.5 if steps else 0.1)

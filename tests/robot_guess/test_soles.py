@@ -49,6 +49,11 @@ def test_an_inertia_that_no_foot_has_draws_no_outline() -> None:
         found = find_sole(tree, robot, biped, leg)
         assert np.ptp(found.corners[:, 0]) < LONGEST * biped.reach
         assert "size of a usual foot" in found.reason
+        assert not found.drawn
+        reach = biped.reach
+        outline = [[0.15, 0.065], [-0.1, 0.065], [-0.1, -0.065], [0.15, -0.065]]
+        np.testing.assert_allclose(found.corners, reach * np.array(outline))
+        assert found.outline_spread == pytest.approx(0.2 * 0.25 * reach), "a fifth of its length"
 
 
 def test_a_foot_that_is_a_solid_box_is_as_much_larger_as_those_of_known_robots() -> None:

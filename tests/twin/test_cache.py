@@ -213,3 +213,28 @@ def test_a_fall_stands_in_its_rollouts_place() -> None:
     assert isinstance(stood, Rollout)
     assert stood.time.size == 100
     assert 1.0 in done
+
+
+@pytest.mark.parametrize(
+    ("platform", "set_to", "under"),
+    [
+        ("linux", {}, "home/.cache/plantar"),
+        ("linux", {"XDG_CACHE_HOME": "xdg"}, "xdg/plantar"),
+        ("linux", {"XDG_CACHE_HOME": ""}, "home/.cache/plantar"),
+        ("linux", {"LOCALAPPDATA": "local"}, "home/.cache/plantar"),
+        ("darwin", {"XDG_CACHE_HOME": "xdg"}, "home/Library/Caches/plantar"),
+        ("win32", {"LOCALAPPDATA": "local"}, "local/plantar/cache"),
+        ("win32", {}, "home/plantar/cache"),
+        ("win32", {"PLANTAR_CACHE": "chosen"}, "chosen"),
+    ],
+)
+def test_each_platform_has_a_place_for_caches(
+    platform: str, set_to: dict[str, str], under: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("PLANTAR_CACHE", "XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in set_to.items():
+        monkeypatch.setenv(name, value and str(tmp_path / value))
+    monkeypatch.setattr(cache.sys, "platform", platform)
+    monkeypatch.setattr(Path, "home", lambda: tmp_path / "home")
+    assert cache.folder() == tmp_path / under

@@ -38,7 +38,7 @@ def test_a_joint_that_stands_while_the_other_legs_turns_is_doubted(robot: RobotM
     assert found.code in UNMENDED, "no number of such a log is usable"
 
 
-@pytest.mark.parametrize(("noise", "code"), [(0.001, "stuck_channel"), (0.0003, "still_joint")])
+@pytest.mark.parametrize(("noise", "code"), [(0.0007, "stuck_channel"), (0.0005, "still_joint")])
 def test_motors_of_a_simulation_without_noise_may_hold_as_they_are_told(
     robot: RobotModel, noise: float, code: str
 ) -> None:
