@@ -175,6 +175,9 @@ def test_a_rotor_is_no_spring_and_a_sensors_zero_no_offset_to_use(tmp_path: Path
     assert {row.name for row in found.parameters} == {"viscous", "coulomb", "offset", "inertia"}
     for name in robot.joint_names:
         assert found.parameter(name, "inertia").value == pytest.approx(0.7, rel=0.1), name
+        assert found.parameter(name, "inertia").verdict == "weak", name
+        assert "gains and delays of sensors" in found.parameter(name, "inertia").reason
+        assert "held-out" not in found.parameter(name, "viscous").reason, name
     assert found.parameter("left_ankle", "offset").value == pytest.approx(3.0 + 2.0, abs=0.3)
     assert found.parameter("left_ankle", "offset").verdict == "weak"
     assert "force sensor" in found.parameter("left_ankle", "offset").reason

@@ -33,6 +33,10 @@ USABLE_SHARE = 0.2  # half width of the interval over the value
 # Of the joint's rms torque: an offset known to within it is usable even where it is near zero.
 OFFSET_SHARE = 0.05
 SENSORS_ZERO = "zeros of the force sensor below the joint count as its offset"
+SENSORS_ERRORS = (
+    "held-out data chose this term, and its interval leaves out what gains and delays of sensors do to it "
+    "(name the joint's terms in the robot file where they are known)"
+)
 # Those of given inertias.
 UNCOUNTED = "the standard deviations of the joints' terms do not include their errors"
 
@@ -104,7 +108,7 @@ def identify_joints(
         for joint, name in enumerate(tree.names)
         if name in terms
     ]
-    parameters = _parameters(fit, trust, terms, fitted, _above_sensors(robot))
+    parameters = _parameters(fit, trust, terms, fitted, robot)
     notes = [*said, *choice]
     return result_of(
         JOINTS_SCHEMA, made, fit, trust, fitted, unseen, places, chosen, parameters=parameters, notes=notes
@@ -180,10 +184,10 @@ def _parameters(
     trust: Uncertainty,
     terms: Mapping[str, tuple[str, ...]],
     recordings: Sequence[Samples],
-    above: frozenset[str],
+    robot: RobotModel,
 ) -> tuple[JointParameter, ...]:
-    """Every term of every joint; above: joints whose rows hold a foot's force sensor."""
-    rows = []
+    """Every term of every joint."""
+    rows, above = [], _above_sensors(robot)
     for joint, name in enumerate(fit.equation.tree.names):
         if name not in terms:
             continue
@@ -197,8 +201,15 @@ def _parameters(
         verdicts = _judge_all(terms[name], fit.extras[row], intervals, torque, still)
         found = zip(terms[name], fit.extras[row], trust.extras[row], intervals, verdicts, strict=True)
         for term, value, std, interval, (verdict, reason) in found:
-            if term == "offset" and verdict == "usable" and name in above:
+            if verdict == "usable" and term == "offset" and name in above:
                 verdict, reason = "weak", SENSORS_ZERO
+            if (
+                verdict == "usable"
+                and term not in FRICTION
+                and robot.base != "fixed"
+                and name not in robot.joints
+            ):
+                verdict, reason = "weak", SENSORS_ERRORS
             rows.append(
                 JointParameter(
                     name, term, TERM_UNITS[term][slides], float(value), float(std), interval, verdict, reason
