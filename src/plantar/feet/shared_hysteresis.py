@@ -30,9 +30,8 @@ from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 # well, and one that was found there may be taken for none again.
 ALIKE = 2.0
 FEWEST_HINTS = 3  # axes that may speak for a memory together: of two, both do so by chance in some walks
-WORTH_A_HINT = (
-    0.05  # of the stiffness, that a memory takes off it on average: less is no more than other errors do
-)
+# Of the stiffness, that a memory takes off it on average: less is no more than other errors do.
+WORTH_A_HINT = 0.05
 HINTED = (
     "hysteresis predicts held-out steps better about every axis, by {:.0f} % together, about none by enough to be "
     "taken for certain; with hysteresis the stiffness is smaller (record longer steps, or stand and sway)"
@@ -118,7 +117,7 @@ def _hinted(feet: Mapping[str, FittedFoot]) -> str | None:
         found = rival(fit)
         if fit.choice is None or found is None or found.refused is not None:
             return None
-        spring = next(score for score in fit.choice.ranking if isinstance(score.model, KelvinVoigt))
+        spring = fit.choice.spring
         missed.append((found.held_out_rms, spring.held_out_rms))
         softer.append(1 - float(found.fit.values[0] / spring.fit.values[0]))
     if len(fits) < FEWEST_HINTS or np.mean(softer) < WORTH_A_HINT:
@@ -143,11 +142,10 @@ def _steps(foot: FittedFoot) -> bool:
 
 def _nearer(choice: ModelChoice, shown: Collection[str], *, steps: bool) -> ModelScore | None:
     """The nearest model of those `shown` that was identified; of a standing foot only where a caution asks for it."""
-    spring = next(score for score in choice.ranking if isinstance(score.model, KelvinVoigt))
     found = next((s for s in choice.ranking if s.refused is None and s.model.name in shown), None)
     if found is None or (choice.caution is None and not steps):
         return None
-    return found if found.held_out_rms < spring.held_out_rms else None
+    return found if found.held_out_rms < choice.spring.held_out_rms else None
 
 
 def _slip_angle(fit: AxisFit) -> float:
@@ -167,9 +165,10 @@ def _cautioned(
     Motions too `small` to bend this axis as far as it takes an element elsewhere to slip show none: what is identified
     in them is the noise's.
     """
-    spring = next(score for score in choice.ranking if isinstance(score.model, KelvinVoigt))
     excluded = not isinstance(fit.model, KelvinVoigt) or any(
-        score.refused is None and score.model.name in shown and score.held_out_rms >= spring.held_out_rms
+        score.refused is None
+        and score.model.name in shown
+        and score.held_out_rms >= choice.spring.held_out_rms
         for score in choice.ranking
     )
     if choice.caution is not None:

@@ -63,6 +63,11 @@ class ModelChoice:
     reach: float
     caution: str | None
 
+    @property
+    def spring(self) -> ModelScore:
+        """What spring and damper came to."""
+        return next(score for score in self.ranking if isinstance(score.model, KelvinVoigt))
+
 
 def choose_model(
     data_sets: Sequence[DataSet],

@@ -198,17 +198,13 @@ def _parameters(
             interval95(float(value), float(std), trust.freedom)
             for value, std in zip(fit.extras[row], trust.extras[row], strict=True)
         ]
+        by_held_out = robot.base != "fixed" and name not in robot.joints
         verdicts = _judge_all(terms[name], fit.extras[row], intervals, torque, still)
         found = zip(terms[name], fit.extras[row], trust.extras[row], intervals, verdicts, strict=True)
         for term, value, std, interval, (verdict, reason) in found:
             if verdict == "usable" and term == "offset" and name in above:
                 verdict, reason = "weak", SENSORS_ZERO
-            if (
-                verdict == "usable"
-                and term not in FRICTION
-                and robot.base != "fixed"
-                and name not in robot.joints
-            ):
+            if verdict == "usable" and term not in FRICTION and by_held_out:
                 verdict, reason = "weak", SENSORS_ERRORS
             rows.append(
                 JointParameter(

@@ -47,8 +47,8 @@ def rival(fit: AxisFit) -> ModelScore | None:
     were kept."""
     if fit.choice is None or has_memory(fit.model):
         return None
-    spring = next(score for score in fit.choice.ranking if isinstance(score.model, KelvinVoigt))
-    better = (score for score in fit.choice.ranking if score.held_out_rms < spring.held_out_rms)
+    most = fit.choice.spring.held_out_rms
+    better = (score for score in fit.choice.ranking if score.held_out_rms < most)
     remembering = (score for score in better if has_memory(score.model))
     return next((score for score in remembering if score.model.possible(score.fit.values)), None)
 
