@@ -10,13 +10,12 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import Foot, RobotModel
 
 TIMESTEP = 1e-3
-EVERY = 5  # steps from sample to sample: 200 Hz
+RATE = 200.0  # Hz
 SETTLE = 2.0  # s
 SOLE_MASS = 0.3  # kg, taken off the ankle
 SOLE_INERTIA = (0.02, 0.02, 0.02)  # kg·m²
@@ -56,31 +55,43 @@ def play_plainly(robot: RobotModel, table: MotionLog, feet: Mapping[str, Springs
     data.qpos[3] = 1.0
     mujoco.mj_kinematics(model, data)
     data.qpos[2] = -min(data.geom(geom).xpos[2] - BALL for geom in _balls(model))
-    rows: list[dict[str, float]] = []
-    soles: list[np.ndarray] = []
-    settling = round(SETTLE / TIMESTEP)
+    kept = _Kept([], [], [], [])
+    settling, every = round(SETTLE / TIMESTEP), round(1 / (RATE * TIMESTEP))
     moments = np.arange(0.0, table.time[-1] + TIMESTEP / 2, TIMESTEP)
     told = np.column_stack([np.interp(moments, table.time, target) for target in targets.T])
     for step in range(settling + len(told)):
         data.ctrl[columns] = told[max(0, step - settling)]
-        if step < settling or step % EVERY:
-            mujoco.mj_step(model, data)
-            continue
-        mujoco.mj_forward(model, data)  # positions, velocities and forces of one moment
-        rows.append({"time": (step - settling) * TIMESTEP, **_readings(robot, data, names)})
-        soles.append(
-            np.array([[*data.body(f"{f}.sole").xpos, *data.body(f"{f}.sole").xmat[6:8]] for f in feet])
-        )
+        if step >= settling and step % every == 0:
+            mujoco.mj_forward(model, data)  # positions, velocities and forces of one moment
+            kept.add(data)
         mujoco.mj_step(model, data)
-    path = np.array(soles)
-    columns_of = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    time = columns_of.pop("time")
+    soles = [model.body(f"{foot}.sole").id for foot in feet]
+    path, turned = np.array(kept.places)[:, soles], np.array(kept.turns)[:, soles]
+    readings = _readings(robot, model, kept, names)
     return Played(
-        MotionLog("outside", time - time[0], columns_of),
-        float(np.abs(path[..., 3:]).max()),
+        MotionLog("outside", np.arange(len(path)) / RATE, readings),
+        float(np.abs(turned[..., 6:8]).max()),
         float(np.abs(path[..., :2] - path[0, :, :2]).max()),
         float(np.ptp(path[..., 2])),
     )
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """What MuJoCo held at each sample: joints, sensors, and place and rotation matrix of every body."""
+
+    joints: list[np.ndarray]
+    sensors: list[np.ndarray]
+    places: list[np.ndarray]
+    turns: list[np.ndarray]
+
+    def add(self, data: mujoco.MjData) -> None:
+        for rows, row in zip(
+            (self.joints, self.sensors, self.places, self.turns),
+            (data.qpos, data.sensordata, data.xpos, data.xmat),
+            strict=True,
+        ):
+            rows.append(row.copy())
 
 
 def _model(robot: RobotModel, feet: Mapping[str, Springs]) -> mujoco.MjModel:
@@ -137,27 +148,37 @@ def _balls(model: mujoco.MjModel) -> list[str]:
     return [name for name in names if ".ball" in name]
 
 
-def _readings(robot: RobotModel, data: mujoco.MjData, joints: list[str]) -> dict[str, float]:
+def _readings(
+    robot: RobotModel, model: mujoco.MjModel, kept: _Kept, joints: list[str]
+) -> dict[str, np.ndarray]:
+    """A log's columns."""
     assert robot.imu is not None
-    found = {f"joint.{name}.position": float(data.joint(name).qpos[0]) for name in joints}
-    imu = f"imu.{robot.imu.name}"
-    for sensor, quantity, axes in (
+    positions, sensed = np.array(kept.joints), np.array(kept.sensors)
+    turns = np.array(kept.turns).reshape(len(positions), -1, 3, 3)
+
+    def sensor(name: str) -> np.ndarray:
+        own = model.sensor(name)
+        return sensed[:, own.adr[0] : own.adr[0] + own.dim[0]]
+
+    found = {f"joint.{name}.position": positions[:, model.joint(name).qposadr[0]] for name in joints}
+    for name, quantity, axes in (
         ("FRAMEQUAT", "orientation", "wxyz"),
         ("GYRO", "angular_velocity", "xyz"),
         ("ACCELEROMETER", "linear_acceleration", "xyz"),
     ):
-        values = data.sensor(sensor).data
-        found |= {f"{imu}.{quantity}.{axis}": float(value) for axis, value in zip(axes, values, strict=True)}
+        found |= _columns(f"imu.{robot.imu.name}.{quantity}", axes, sensor(name))
     for name, foot in robot.feet.items():
-        ankle, sole = (
-            Rotation.from_matrix(data.body(one).xmat.reshape(3, 3)) for one in (foot.ankle, f"{name}.sole")
-        )
+        ankle, sole = (turns[:, model.body(one).id] for one in (foot.ankle, f"{name}.sole"))
         # The sensor reads what the ankle does to the sole; the environment does the opposite to the robot.
-        turned = ankle.inv() * sole
-        force, torque = (-turned.apply(data.sensor(f"{name}.{kind}").data) for kind in ("FORCE", "TORQUE"))
-        torque = torque + np.cross(foot.bush.xyz - foot.wrench.placement.xyz, force)
+        force, torque = (
+            -np.einsum("nji,njk,nk->ni", ankle, sole, sensor(f"{name}.{kind}"))
+            for kind in ("FORCE", "TORQUE")
+        )
+        torque += np.cross(foot.bush.xyz - foot.wrench.placement.xyz, force)
         for kind, values in (("force", force), ("torque", torque)):
-            found |= {
-                f"wrench.{foot.wrench.name}.{kind}.{a}": float(v) for a, v in zip("xyz", values, strict=True)
-            }
+            found |= _columns(f"wrench.{foot.wrench.name}.{kind}", "xyz", values)
     return found
+
+
+def _columns(name: str, axes: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    return {f"{name}.{axis}": column for axis, column in zip(axes, values.T, strict=True)}
