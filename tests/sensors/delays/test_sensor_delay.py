@@ -116,7 +116,7 @@ def test_encoders_that_seem_late_are_looked_for_on_the_grid(
     """Gentle motions close well enough at no delay, from which steps settle nowhere; where they do, and leave much to
     suspect, the grid is asked as well."""
     gentle = checked(
-        twin, play_all([short(plan("Myrand4"), 0.0, 40.0)], twin, PAPER, "sensors", [0])[0][0].log
+        twin, play_all([short(plan("Myrand4"), 20.0, 40.0)], twin, PAPER, "sensors", [0])[0][0].log
     )
     still = np.zeros(3)
     seen, timely = (
