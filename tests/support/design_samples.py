@@ -25,6 +25,7 @@ from plantar.design.story import Design, DesignSettings, design_motion
 from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.twin import cache as twin_cache
 from plantar.twin.robots import hrp2
 
 STIFFNESS = 500.0
@@ -95,16 +96,18 @@ class RehearsedOnce:
         return [replace(self.one, factor=factor) for factor in factors]
 
 
-def identified_once(
-    found: dict[int, tuple[FeetResult | None, ...]],
-) -> Callable[[Rehearsal, RobotModel, int], tuple[FeetResult | None, ...]]:
-    """Rehearsals with one rollout have one result, which is kept in `found`."""
+def identified_once(name: str) -> Callable[[Rehearsal, RobotModel, int], tuple[FeetResult | None, ...]]:
+    """Rehearsals with one rollout have one result, which is kept under `name` for all processes of this session."""
     feet_found = Rehearsal.feet_found
+    found: dict[int, tuple[FeetResult | None, ...]] = {}
 
     def identify(own: Rehearsal, robot: RobotModel, draws: int) -> tuple[FeetResult | None, ...]:
+        def made() -> dict[str, np.ndarray]:
+            return {"results": np.frombuffer(pickle.dumps(feet_found(own, robot, draws)), np.uint8)}
+
         key = id(own.rollout)
         if key not in found:
-            found[key] = feet_found(own, robot, draws)
+            found[key] = pickle.loads(twin_cache.kept(f"{name}{len(found)}", made)["results"].tobytes())
         return found[key]
 
     return identify
@@ -116,7 +119,7 @@ def designed() -> Design:
     with (
         patch.object(story, "best_motion", gentle_motion),
         patch.object(attempt, "rehearse", RehearsedOnce()),
-        patch.object(Rehearsal, "feet_found", identified_once({})),
+        patch.object(Rehearsal, "feet_found", identified_once("designed")),
         patch.object(rehearsal, "DRAWS", 1),
         patch.object(cores, "usable_cores", lambda: 1),  # copies would identify it again
     ):
