@@ -108,10 +108,11 @@ def record(
     columns = {f"joint.{joint}.position": joints[k, 0] for k, joint in enumerate(robot.joint_names)}
     columns |= {f"joint.{joint}.velocity": joints[k, 1] for k, joint in enumerate(robot.joint_names)}
     imu_joint, imu = robot.frame(robot.imu.placement)  # type: ignore[union-attr]
-    gyro, accelerometer = np.zeros((2, len(time), 3))
+    gyro, moving, accelerometer = np.zeros((3, len(time), 3))
     torques = np.zeros((len(time), len(robot.joint_names)))
     wrenches = {side: np.zeros((len(time), 6)) for side in robot.feet}
     share = 0.5 + 0.4 * np.sin(2 * np.pi * 0.23 * time)
+    frames = {side: robot.frame(foot.wrench.placement) for side, foot in robot.feet.items()}
     rotation = np.eye(3)
     for i in range(len(time)):
         q = np.concatenate([np.zeros(3), pin.Quaternion(rotation).coeffs(), joints[:, 0, i]])
@@ -123,16 +124,18 @@ def record(
         speed, slope = imu.actInv(data.v[imu_joint + 1]), imu.actInv(data.a[imu_joint + 1])
         gyro[i] = speed.angular
         up = (data.oMi[imu_joint + 1] * imu).rotation.T @ np.array([0, 0, 9.81])
-        accelerometer[i] = slope.linear + np.cross(speed.angular, speed.linear) + up
+        accelerometer[i] = slope.linear + up
+        moving[i] = speed.linear
         torques[i] = tau[6:]
         for side, part in (("left", share[i]), ("right", 1 - share[i])):
-            joint, placement = robot.frame(robot.feet[side].wrench.placement)
+            joint, placement = frames[side]
             sensor = data.oMi[1].inverse() * data.oMi[joint + 1] * placement
             wrench = sensor.actInv(pin.Force(part * tau[:6]))
             wrenches[side][i] = robot.feet[side].wrench.sign * wrench.vector
             jacobian = pin.computeJointJacobian(model, data, q, joint + 1)
             at_joint = placement.act(wrench)
             torques[i] -= (jacobian.T @ at_joint.vector)[6:]
+    accelerometer += np.cross(gyro, moving)
     pieces = [noise] * 3 + [noise / 10] * 3
     for side, values in wrenches.items():
         values += rng.normal(size=values.shape) * pieces

@@ -124,24 +124,21 @@ def _constrained(square: Array, linear: Array, prior: Prior, places: Sequence[in
     unit = max(float(np.abs(linear).max(initial=0.0)), 1e-12)
     # Logs without noise decide some directions 1e12 times as well as others.
     sizes = 1 / np.sqrt(np.maximum(np.diag(square) / unit, 1e-12))
-    blocks, offsets = [], []
+    cones, offsets = np.zeros((size + len(places), count)), np.zeros(size + len(places))
     for link, width in enumerate(prior.widths):
-        blocks.append(-_PACKED @ width)
-        cad = prior.cad[PER_LINK * link : PER_LINK * (link + 1)]
-        offsets.append(_PACKED @ cad - FLOOR * _pack(prior.reference[link]))
-    bodies = sparse.hstack(
-        [sparse.block_diag(blocks), sparse.csc_matrix((len(blocks) * PER_LINK, count - size))]
-    )
-    signs = sparse.csc_matrix((-np.ones(len(places)), (range(len(places)), places)), (len(places), count))
+        part = slice(PER_LINK * link, PER_LINK * (link + 1))
+        cones[part, part] = -_PACKED @ width
+        offsets[part] = _PACKED @ prior.cad[part] - FLOOR * _pack(prior.reference[link])
+    cones[range(size, len(cones)), places] = -1.0
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
     solution = clarabel.DefaultSolver(
         sparse.csc_matrix(np.triu(square) / unit * np.outer(sizes, sizes)),
         -linear / unit * sizes,
-        sparse.csc_matrix(sparse.vstack([bodies, signs]) @ sparse.diags(sizes)),
-        np.concatenate([*offsets, np.zeros(len(places))]),
-        [clarabel.PSDTriangleConeT(4)] * len(blocks) + [clarabel.NonnegativeConeT(len(places))],
+        sparse.csc_matrix(cones * sizes),
+        offsets,
+        [clarabel.PSDTriangleConeT(4)] * len(prior.widths) + [clarabel.NonnegativeConeT(len(places))],
         settings,
     ).solve()
     if str(solution.status) not in ("Solved", "AlmostSolved"):
