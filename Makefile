@@ -21,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(RUNNING)
 	$(BIN)/plantar demo
 
-# A file stays in one process, so that its fixtures are made once; the order of the folders puts long files first.
+# A file stays in one process, so that its fixtures are made once; tests/conftest.py puts the longest ones first.
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
 

@@ -22,6 +22,22 @@ import pytest
 from biped_robot import make_robot
 from plantar.robot.model import RobotModel
 
+# The longest files, which come first: one process would be at work on them alone when all else is done.
+LONGEST = (
+    "tests/docs/test_pages.py",
+    "tests/campaign/test_demo.py",
+    "tests/comparison/test_compare.py",
+    "tests/whole_body/test_joints.py",
+    "tests/online/test_library.py",
+    "tests/test_front_door.py",
+    "tests/whole_body/test_inertia.py",
+    "tests/twin/simulation/test_rollout.py",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: not item.nodeid.startswith(LONGEST))
+
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
