@@ -149,8 +149,14 @@ def test_a_passive_spring_needs_no_torque(tmp_path: Path) -> None:
     assert np.sign(found.parameter("shoulder", "stiffness").value) in (np.sign(expected[0]), 0.0)
 
 
+def described(terms: str) -> str:
+    """These terms of every joint of the small biped: none is chosen by held-out parts, which takes three fits."""
+    legs = [f"{side}_{joint}" for side in ("left", "right") for joint in ("roll", "pitch", "ankle")]
+    return "joints:\n" + "".join(f"  {name}: {{terms: [{terms}]}}\n" for name in ("shoulder", *legs))
+
+
 def test_a_floating_robots_friction_is_found_beside_its_contacts(tmp_path: Path) -> None:
-    robot = small_biped.robot(tmp_path)
+    robot = small_biped.robot(tmp_path, described("viscous, coulomb, offset"))
     log = small_biped.record(robot, small_biped.truth(robot.floating_model, 8), "walk", 8, 20.0, 0.2)
     columns = {
         f"joint.{name}.effort": log.column(f"joint.{name}.effort")
@@ -188,17 +194,10 @@ def test_a_rotor_is_no_spring_and_a_sensors_zero_no_offset_to_use(tmp_path: Path
 def test_inertias_known_found_first_or_together_give_the_joints_parameters(
     tmp_path: Path, inertia: Inertia
 ) -> None:
-    terms = "".join(
-        f"  {side}_{joint}: {{terms: [viscous, coulomb, stiffness]}}\n"
-        for side in ("left", "right")
-        for joint in ("roll", "pitch", "ankle")
-    )
-    robot = small_biped.robot(
-        tmp_path, "joints:\n  shoulder: {terms: [viscous, coulomb, stiffness]}\n" + terms
-    )
+    robot = small_biped.robot(tmp_path, described("viscous, coulomb, stiffness"))
     model = robot.floating_model
     log = small_biped.record(
-        robot, model if inertia == "known" else small_biped.truth(model, 9), "walk", 9, 60.0, 0.2
+        robot, model if inertia == "known" else small_biped.truth(model, 9), "walk", 9, 30.0, 0.2
     )
     columns = {}
     for name in robot.joint_names:

@@ -51,6 +51,12 @@ def test_a_place_that_is_told_as_exact_gives_way_to_what_motions_show(
     texts = [note.text for note in found.notes if note.code == "bush_place" and "`uncertainty`" in note.text]
     assert {text.split()[0] for text in texts} == {"left", "right"}
     assert all("known to 0.2 mm: taken as known to 5 mm" in text for text in texts)
+
+
+def test_a_place_that_is_told_as_exact_and_is_right_is_not_told_of(
+    robot: RobotModel, recorded: list[MotionLog]
+) -> None:
+    sure = replace(robot, uncertainty=Uncertainty(bush_position=0.0))
     assert "bush_place" not in codes(identify_feet(sure, recorded, settings=LINEAR))
 
 
