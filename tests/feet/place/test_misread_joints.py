@@ -89,20 +89,15 @@ def test_the_joint_is_named_and_neither_number_is_usable(
     assert all(row.verdict == "usable" for row in rows if row.axis not in (axis, "z"))
 
 
-@pytest.mark.parametrize(("play", "told"), [(0.0, False), (0.002, True)])
-def test_play_in_an_encoders_drive_is_told_with_its_size(
-    robot: RobotModel, walks: list[MotionLog], play: float, told: bool
-) -> None:
-    found = identify_feet(robot, [with_play(log, "left_ankle_roll", play) for log in walks], settings=LINEAR)
-    texts = said(found)
-    assert bool(texts) == told
-    if told:
-        (text,) = texts
-        named = text.partition("'left_ankle_roll' ")[2]
-        assert "mrad behind wherever it turns round" in named
-        assert float(named.split()[0]) == pytest.approx(1e3 * play, rel=0.25)
+def test_play_in_an_encoders_drive_is_told_with_its_size(robot: RobotModel, walks: list[MotionLog]) -> None:
+    found = identify_feet(robot, [with_play(log, "left_ankle_roll", 0.002) for log in walks], settings=LINEAR)
+    (text,) = said(found)
+    named = text.partition("'left_ankle_roll' ")[2]
+    assert "mrad behind wherever it turns round" in named
+    assert float(named.split()[0]) == pytest.approx(2.0, rel=0.25)
 
 
+@cache
 def standing(noise: bool = True) -> list[MotionLog]:
     logs = [record(sway(f"sway_{seed}", seed, duration=30.0, torso=TRUNK)) for seed in (1, 2)]
     return [noisy(log, seed) for seed, log in enumerate(logs)] if noise else logs
@@ -184,7 +179,7 @@ def test_a_leg_all_of_whose_joints_are_late_is_told_as_one(robot: RobotModel, wa
     assert any("all joints to the left foot 1" in text for text in said(found))
 
 
-@pytest.mark.parametrize("late", [0.03, 0.05, 0.1, 0.2])
+@pytest.mark.parametrize("late", [0.03, 0.2])
 def test_an_imu_that_is_late_is_told_of_every_number_where_no_log_shows_a_delay(
     robot: RobotModel, late: float
 ) -> None:

@@ -113,8 +113,8 @@ class _Alone:
         )
         self.model: Any = mujoco.MjModel.from_xml_string(
             f'<mujoco><option timestep="{step}" cone="elliptic" impratio="{IMPRATIO}" gravity="0 0 0">'
-            # Spheres on one plane all touch: sorting out which takes a tenth of each step.
-            '<flag midphase="disable"/></option>'
+            # Spheres on one plane all touch, and are one body's: sorting out which takes a tenth of each step.
+            '<flag midphase="disable" island="disable"/></option>'
             f'<worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 {foot.depth}"><freejoint/>'
             f'<inertial pos="0 0 0" mass="{mass}" diaginertia="{inertia} {inertia} {inertia}"/>'
             f"{points}</body></worldbody></mujoco>"
