@@ -39,6 +39,8 @@ class Guess:
 def read_guesses(content: bytes) -> tuple[Guess, ...]:
     """The marked keys of a robot file, in its order; it must be readable YAML without aliases."""
     text = content.decode("utf-16" if content[:2] in UTF_16 else "utf-8-sig")
+    if "GUESS" not in text:
+        return ()
     root = yaml.compose(text, Loader=yaml.SafeLoader)
     keys: dict[int, str] = {}
     quoted: list[range] = []

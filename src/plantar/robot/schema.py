@@ -172,8 +172,7 @@ def read_yaml(path: Path) -> tuple[Any, bytes]:
     """
     content = read_bounded(path, FILE_LIMIT, RobotError, "a YAML file of some lines")
     try:
-        _refuse_bombs(content, path)
-        loader = yaml.SafeLoader(content)
+        loader = _Loader(content, path)
         if (node := loader.get_single_node()) is None:
             return None, content
         _refuse_twice(node, path)
@@ -186,15 +185,23 @@ def read_yaml(path: Path) -> tuple[Any, bytes]:
         raise RobotError(f"is not readable YAML{line}: {reason}", path=path, valid=valid) from error
 
 
-def _refuse_bombs(content: bytes, path: Path) -> None:
-    """No aliases (they can multiply without bound) and no deep nesting, found before anything is built."""
-    depth = 0
-    for event in yaml.parse(content, Loader=yaml.SafeLoader):
-        if isinstance(event, yaml.AliasEvent):
-            raise RobotError("uses a YAML alias", path=path, valid="values written out")
-        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-        if depth > DEPTH_LIMIT:
-            raise RobotError("is nested too deeply", path=path, valid=f"{DEPTH_LIMIT} levels")
+class _Loader(yaml.SafeLoader):
+    """Refuses aliases (they can multiply without bound) and deep nesting as it comes upon them, while nothing is built
+    of the nodes."""
+
+    def __init__(self, content: bytes, path: Path) -> None:
+        super().__init__(content)
+        self._path, self._depth = path, 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        if self.check_event(yaml.AliasEvent):
+            raise RobotError("uses a YAML alias", path=self._path, valid="values written out")
+        self._depth += (inside := self.check_event(yaml.CollectionStartEvent))
+        if self._depth > DEPTH_LIMIT:
+            raise RobotError("is nested too deeply", path=self._path, valid=f"{DEPTH_LIMIT} levels")
+        node = super().compose_node(parent, index)
+        self._depth -= inside
+        return node
 
 
 def _refuse_twice(node: yaml.Node, path: Path) -> None:
