@@ -47,8 +47,6 @@ _SAVED: Final = STYLE | {
     "svg.hashsalt": "plantar",  # the same figure is the same file
     "svg.fonttype": "path",
     "pdf.fonttype": 42,
-    "figure.autolayout": False,
-    "figure.constrained_layout.use": False,
 }
 
 
@@ -190,7 +188,9 @@ def _rendered(drawing: Drawing, kind: Format) -> bytes:
     metadata: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[kind]
     with matplotlib.rc_context(_SAVED):
         drawing.savefig(buffer, format=kind, dpi=140, metadata=metadata)
-        drawing.set_layout_engine(None)  # what is laid out once stays so, in every format, and is drawn once for each
+        drawing.set_layout_engine(
+            None
+        )  # what is laid out once stays so, in every format, and is drawn once for each
     return _few_colours(buffer) if kind == "png" else buffer.getvalue()
 
 
