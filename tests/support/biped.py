@@ -112,18 +112,14 @@ def times(motion: Motion, rate: float = 100.0, jitter: float = 0.0, seed: int = 
 
 def record(motion: Motion, mounting: Mounting = AS_USUAL, at: np.ndarray | None = None) -> MotionLog:
     """What the robot records of a motion, exactly."""
-    if at is None and mounting is AS_USUAL:  # as most logs, of which many tests ask for the same
-        log = usual_record(motion)
-        return MotionLog(log.name, log.time, dict(log.columns))
+    if at is None and mounting is AS_USUAL:
+        return usual_record(motion)  # as most logs, of which many tests ask for the same
     return recorded(motion, mounting, times(motion) if at is None else at)
 
 
 @lru_cache(maxsize=KEPT)
 def usual_record(motion: Motion) -> MotionLog:
-    log = recorded(motion, AS_USUAL, times(motion))
-    for values in (log.time, *log.columns.values()):
-        values.flags.writeable = False
-    return log
+    return recorded(motion, AS_USUAL, times(motion))
 
 
 def recorded(motion: Motion, mounting: Mounting, t: np.ndarray) -> MotionLog:
