@@ -91,6 +91,7 @@ def sway(name: str = "sway", seed: int = 0, duration: float = 20.0, **changes: o
 
 @lru_cache(maxsize=KEPT)
 def usual_sway(name: str, seed: int, duration: float) -> Motion:
+    """`sway` without changes."""
     random = np.random.default_rng(seed)
 
     def wave(degrees: float) -> Signal:

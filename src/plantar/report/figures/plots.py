@@ -188,9 +188,8 @@ def _rendered(drawing: Drawing, kind: Format) -> bytes:
     metadata: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[kind]
     with matplotlib.rc_context(_SAVED):
         drawing.savefig(buffer, format=kind, dpi=140, metadata=metadata)
-        drawing.set_layout_engine(
-            None
-        )  # what is laid out once stays so, in every format, and is drawn once for each
+        # What is laid out once stays so, in every format, and is then drawn but once for each.
+        drawing.set_layout_engine(None)
     return _few_colours(buffer) if kind == "png" else buffer.getvalue()
 
 
