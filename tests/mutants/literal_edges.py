@@ -80,7 +80,7 @@ LITERAL_EDGES = (
     ),
     Mutant(
         "sensors/delays/refined_delays.py", "half of what choices leave in doubt of a delay",
-        "return UNIFORM * float(np.sqrt(np.maximum(moved**2", "return 0.5 * UNIFORM * float(np.sqrt(np.maximum(moved**2",
+        "return UNIFORM * float(np.sqrt(np.max", "return 0.5 * UNIFORM * float(np.sqrt(np.max",
         ("sensors/delays/test_edges.py",),
     ),
     Mutant(
