@@ -195,12 +195,12 @@ def test_a_mesh_of_mujoco_reaches_as_far_as_its_corners(feet: dict[str, Any], tm
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("metersPerUnit = 1", "metersPerUnit = 0.01", 
+        ("metersPerUnit = 1", "metersPerUnit = 0.01",
          "one unit of the stage is 0.01 m and 1 kg (valid: metersPerUnit = 1"),
         ("kilogramsPerUnit = 1", "kilogramsPerUnit = 0.5", "one unit of the stage is 1 m and 0.5 kg"),
-        ('"left_ankle"', '"left_ankel"', 
+        ('"left_ankle"', '"left_ankel"',
          "has no rigid body 'left_ankle' (the ankle link of the robot file) (valid: left_ankel"),
-        ('    def Xform "biped"', 
+        ('    def Xform "biped"',
          '    def Xform "left_ankle" (prepend apiSchemas = ["PhysicsRigidBodyAPI"]) {\n }\n    def Xform "biped"',
          "has several rigid bodies 'left_ankle': /World/left_ankle, /World/biped/left_ankle"),
         ("#usda 1.0", "#usdx", "USD cannot open the stage"),
