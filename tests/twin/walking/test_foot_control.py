@@ -1,4 +1,4 @@
-"""How a leg makes its foot carry what is asked: each correction by its own law, on a robot whose legs can do anything."""
+"""How a leg makes its foot carry what is asked: each correction by its own law."""
 
 from __future__ import annotations
 
