@@ -12,7 +12,7 @@ import pytest
 from plantar.conventions import Array
 from plantar.motions.plan import Plan, Walk
 from plantar.robot.model import RobotModel
-from plantar.twin.bush import Bush
+from plantar.twin.bush import Bush, Feet
 from plantar.twin.walking.balance_state import State
 from plantar.twin.walking.foot_control import FootControl
 from plantar.twin.walking.stabiliser import Asked
@@ -37,7 +37,11 @@ class Leg:
     """One robot over a floor: what its legs do at each sample."""
 
     def __init__(
-        self, robot: RobotModel, standing: tuple[str, ...] = ("left", "right"), yaw: float = 0.0
+        self,
+        robot: RobotModel,
+        standing: tuple[str, ...] = ("left", "right"),
+        yaw: float = 0.0,
+        bushes: Feet | None = FEET,
     ) -> None:
         self.robot, count = robot, 400
         model = robot.floating_model.copy()
@@ -62,7 +66,7 @@ class Leg:
 
         estimator = SimpleNamespace(model=model, data=model.createData(), joints=joints, frames=frames,
                                     configuration=configuration)  # fmt: skip
-        self.control = FootControl(cast(Any, estimator), robot, plan, FEET)
+        self.control = FootControl(cast(Any, estimator), robot, plan, bushes)
         self.estimator, self.q = estimator, configuration(np.zeros(len(joints)), pin.SE3.Identity())
 
     def step(self, sample: int, torque: Any = (0, 0), read: Any = (0, 0), load: float = 0.0, seen: Any = None,
@@ -152,3 +156,10 @@ def test_no_leg_corrects_more_than_a_quarter_radian_and_three_centimetres(robot:
         np.testing.assert_allclose(moved[foot], [-0.03, -0.25, 0.25], rtol=1e-6)
     allowed = Leg(robot).step(0, load=0.025 / vertical("left"), lean=(0.24, -0.24, 0))
     np.testing.assert_allclose(allowed["left"], [-0.025, -0.24, 0.24], rtol=1e-6)
+
+
+def test_without_rubber_servos_alone_give_way_and_at_once(robot: RobotModel) -> None:
+    torque = np.array([4.0, -6.0])
+    moved = Leg(robot, bushes=None).step(0, torque, torque, load=300.0)
+    for foot in FEET:
+        np.testing.assert_allclose(moved[foot], [-300.0 / LEG, *(-torque / SERVO)], rtol=1e-6)
