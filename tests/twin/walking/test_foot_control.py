@@ -127,11 +127,11 @@ def test_a_load_shortens_its_leg_and_the_longer_leg_carries_more(robot: RobotMod
 
 def test_a_foot_in_the_air_forgets_and_gives_way(robot: RobotModel) -> None:
     leg = Leg(robot, ("left",))
-    leg.control.turned["right"] = np.array([0.01, -0.02])
+    leg.control.turned["right"], leg.control.lowered["right"] = np.array([0.01, -0.02]), 0.01
     for sample in range(30):
         moved = leg.step(sample)
     faded = (1 - PERIOD / 0.15) ** 30  # after 0.15 s
-    np.testing.assert_allclose(moved["right"][1:], faded * np.array([0.01, -0.02]), rtol=1e-6)
+    np.testing.assert_allclose(moved["right"], faded * np.array([-0.01, 0.01, -0.02]), rtol=1e-6)
     touched = Leg(robot, ("left",)).step(0, seen={"left": 600.0, "right": 10.0})
     assert touched["right"][0] == pytest.approx(30.0 * PERIOD * 10.0 * vertical("right"), rel=1e-6)
 
@@ -148,6 +148,8 @@ def test_a_lean_is_taken_off_and_a_foot_in_the_air_kept_at_its_height(robot: Rob
     sinks = lean[0] * arm[1] - lean[1] * arm[0]
     assert moved["right"][0] == pytest.approx(-sinks * (1 - (1 - PERIOD / 0.05) ** 10), rel=1e-6)
     assert moved["left"][0] == pytest.approx(0.0, abs=1e-9)
+    for foot, both in Leg(robot, yaw=yaw).step(0, lean=lean).items():
+        assert both[0] == pytest.approx(0.0, abs=1e-9), f"{foot} stands"
 
 
 def test_no_leg_corrects_more_than_a_quarter_radian_and_three_centimetres(robot: RobotModel) -> None:
