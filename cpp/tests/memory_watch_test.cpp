@@ -10,9 +10,9 @@ namespace memory_watch_test {
 
 using namespace plantar;
 
-constexpr double ROW = 0.025;                        // s
-constexpr double STIFF = 800.0, SLIPS = 0.006;       // N·m/rad, rad
-constexpr double WORTH = 0.05 * STIFF * SLIPS;       // N·m: an element that adds a twentieth of the stiffness
+constexpr double ROW = 0.025;                   // s
+constexpr double STIFF = 800.0, SLIPS = 0.006;  // N·m/rad, rad
+constexpr double WORTH = 0.05 * STIFF * SLIPS;  // N·m: an element that adds a twentieth of the stiffness
 
 const RegressionPrior PRIOR = {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0, 0.1},
                                {},
@@ -35,7 +35,8 @@ struct Sway {
   // `filtered`: what the filter makes of a constant.
   void go(int rows, double filtered = 1.0) {
     for (const int end = row + rows; row < end; ++row) {
-      const double time = ROW * row, angle = middle + size * std::sin(2.0 * time), rate = 2.0 * size * std::cos(2.0 * time);
+      const double time = ROW * row, angle = middle + size * std::sin(2.0 * time),
+                   rate = 2.0 * size * std::cos(2.0 * time);
       element = std::clamp(element + (angle - before) / SLIPS, -1.0, 1.0), before = angle;
       const double torque = STIFF * angle + 20.0 * rate + slip * element + 1.0 + scatter * std::sin(1e5 * row);
       watch.add({{filtered, time, 0.0}, {angle, rate, element}, torque, {}}, ROW);
@@ -49,7 +50,8 @@ void it_is_excluded_by_motions_that_would_have_shown_it() {
     Sway sway{size};
     sway.go(4000);
     check::that(!sway.watch.seen(), "there is none");
-    check::that(sway.watch.excluded() == (size > 0.015), "29 mrad back and forth say nothing of what slips at 15, 31 do");
+    check::that(sway.watch.excluded() == (size > 0.015),
+                "29 mrad back and forth say nothing of what slips at 15, 31 do");
     sway.watch.restart();
     check::that(!sway.watch.excluded() && !sway.watch.seen(), "nothing is known of it anew");
     sway.size = 0.01, sway.go(2000);
@@ -95,7 +97,10 @@ void groups_must_agree() {
         if (sway.watch.seen() || sway.watch.excluded()) first = sway.watch.values().groups;
       }
       const bool far = size > 0.015;
-      check::that(far ? first >= 3 && first < 6 : slip > 0.0 ? first >= 6 : first == 0, "three groups of large motions, or six");
+      check::that(far          ? first >= 3 && first < 6
+                  : slip > 0.0 ? first >= 6
+                               : first == 0,
+                  "three groups of large motions, or six");
     }
 }
 

@@ -11,7 +11,8 @@ using namespace plantar;
 FootEstimate after_a_minute(const EstimatorModel& model, double rate_hz = 200.0) {
   FootEstimator estimator(model);
   FootEstimate last;
-  for (int i = 0; i < static_cast<int>(60 * rate_hz); ++i) last = estimator.step(Sensors(i / rate_hz).reading(i / rate_hz))[0];
+  for (int i = 0; i < static_cast<int>(60 * rate_hz); ++i)
+    last = estimator.step(Sensors(i / rate_hz).reading(i / rate_hz))[0];
   return last;
 }
 

@@ -13,12 +13,12 @@ namespace turn_watch_test {
 
 using namespace plantar;
 
-constexpr double PERIOD = 0.005, WEIGHT = 500.0;          // s, N
+constexpr double PERIOD = 0.005, WEIGHT = 500.0;                  // s, N
 constexpr double FOLLOWS = 1.0 / (2.0 * std::numbers::pi * 1.5);  // s: time constant of the band
 using Rates = std::function<std::array<double, 3>(double)>;
 
-// A chest turns as `turns` says [rad/s about its own axes], the gyroscope reads `reads`, and the attitude has noise; the
-// IMU is mounted with no axis along the chest's. When they differ [s], over all samples.
+// A chest turns as `turns` says [rad/s about its own axes], the gyroscope reads `reads`, and the attitude has noise;
+// the IMU is mounted with no axis along the chest's. When they differ [s], over all samples.
 struct Told {
   double first = -1.0, last = -1.0, whole = 0.0;
 };
@@ -76,11 +76,12 @@ Told with_gain(const Rates& turns, double gain, double end, double noise = 0.0) 
   return differ(turns, times(turns, gain), BEGIN, end, noise);
 }
 
-
-// Half of the larger of both: an attitude that turns half as much again, or a gyroscope that turns twice as much, not yet.
+// Half of the larger of both: an attitude that turns half as much again, or a gyroscope that turns twice as much, not
+// yet.
 void gains_differ_beyond_a_half() {
   for (const double gain : {0.55, 1.0, 1.9}) check::that(with_gain(sways(0.3), gain, 40.0).whole == 0.0, "gains");
-  for (const double gain : {0.45, 2.1}) check::that(with_gain(sways(0.3), gain, 40.0).whole > 9.0, "no gain makes that");
+  for (const double gain : {0.45, 2.1})
+    check::that(with_gain(sways(0.3), gain, 40.0).whole > 9.0, "no gain makes that");
 }
 
 // Both turns come through the same low-pass; how long until their difference is large enough, and stays so.
@@ -131,7 +132,9 @@ void one_reading_echoes_no_longer_than_the_fastest_turn() {
 
 void a_fault_moves_the_zero_by_little() {
   const Rates stands = [](double) { return std::array<double, 3>{}; };
-  const Rates faulty = [](double t) { return std::array<double, 3>{0.0, t > BEGIN && t < BEGIN + 6.0 ? 0.04 : 0.0, 0.0}; };
+  const Rates faulty = [](double t) {
+    return std::array<double, 3>{0.0, t > BEGIN && t < BEGIN + 6.0 ? 0.04 : 0.0, 0.0};
+  };
   check::that(differ(stands, faulty, BEGIN, BEGIN + 50.0, 2e-4).last < 7.0, "by 5 mrad/s in six seconds, and is over");
 }
 
