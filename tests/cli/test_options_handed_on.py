@@ -152,3 +152,76 @@ def test_design(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     robot, settings, earlier, _ = seen.given
     assert (robot.name, earlier) == ("biped", None)
     assert settings == seen.module.DesignSettings(500.0, 15.0, 40.0, "D", 4)  # type: ignore[attr-defined]
+
+
+def test_identify_feet(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    command = importlib.import_module("plantar.cli.identify.feet")
+    asked: list[Any] = []
+
+    def open_in_turn(paths: list[Path], robot: str, size: Any, memory: int, ahead: Any) -> list[str]:
+        asked.extend([robot, memory])
+        return [path.stem for path in paths]
+
+    monkeypatch.setattr(command, "read_ahead", lambda paths, memory: None)
+    monkeypatch.setattr(command, "robot_of", lambda place: "robot")
+    monkeypatch.setattr(command, "open_in_turn", open_in_turn)
+    seen = Seen("plantar.feet.prepare", "prepare_all", monkeypatch)
+    told = ("--offset", "shared", "--model", "hardening", "--wrench-delay", "-3", "--cutoff", "4", "--window", "1.5",
+            "--memory", "1GB", "--validate", "c.csv", "--validate", "d.csv")  # fmt: skip
+    assert (
+        run("identify", "feet", write_robot(tmp_path), "a.csv", "b.csv", "--out", tmp_path / "out", *told)
+        == 1
+    )
+    robot, fitted, unseen, settings, *_ = seen.given
+    assert (robot, fitted, unseen) == ("robot", ["a", "b"], ["c", "d"])
+    window = pytest.approx(0.026179939)  # 1.5 degrees
+    assert settings == FeetSettings("shared", "hardening", 4.0, window=settings.window, wrench_delay=-0.003)
+    assert settings.window == window
+    assert asked == ["robot", 1_000_000_000]
+
+
+@pytest.mark.parametrize("what", ["inertia", "joints"])
+def test_identify_inertia_and_joints(what: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    seen = Seen(f"plantar.cli.identify.{what}", f"identify_{what}", monkeypatch)
+    opened: list[Any] = []
+    monkeypatch.setattr(
+        seen.module.identification, "opened", lambda *given: opened.extend(given) or ("robot", ["a"], ["b"])
+    )
+    told = ("--cutoff", "7", "--as-recorded", "--memory", "1GB", "--validate", "b.csv")
+    more = ("--inertia", "known") if what == "joints" else ()
+    assert run("identify", what, "robot.yaml", "a.csv", "--out", tmp_path / "out", *told, *more) == 1
+    logs, unseen = [Path("a.csv")], [Path("b.csv")]
+    assert opened == [Path("robot.yaml"), logs, unseen, tmp_path / "out", 1_000_000_000]
+    assert seen.given[:4] == ("robot", ["a"], ["b"], DynamicsSettings(7.0, True))
+    assert seen.named == ({"inertia": "known"} if more else {})
+
+
+def test_compare_and_select(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    robot = write_robot(tmp_path)
+    seen = Seen("plantar.comparison.compare", "compare", monkeypatch)
+    command = importlib.import_module("plantar.cli.compare")
+    monkeypatch.setattr(command.FeetResult, "load", lambda path, residuals: path)
+    monkeypatch.setattr(command, "open_together", lambda logs, known, memory: (logs, known.name, memory))
+    told = ("--swing", "0.02", "--pivot", "bush", "--least-load", "0.3", "--memory", "1GB")
+    assert run("compare", "r.json", robot, "a.csv", *told) == 1
+    assert (seen.given[0], seen.given[1].name, seen.given[2]) == (
+        Path("r.json"), "biped", ([Path("a.csv")], "biped", 1_000_000_000),
+    )  # fmt: skip
+    assert seen.given[4:] == (0.02, command.Stance("bush", 0.3))
+    chosen = Seen("plantar.cli.select", "select_motions", monkeypatch)
+    monkeypatch.setattr(chosen.module, "open_together", lambda logs, known, memory: (logs, memory))
+    assert run("select", robot, "a.csv", "b.csv", "--compare", "x, y", "--largest", 4, "--memory", "1GB") == 1
+    assert chosen.given[1:] == (([Path("a.csv"), Path("b.csv")], 1_000_000_000), ["x", "y"], 4)
+
+
+def test_init(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    seen = Seen("plantar.cli.init", "guess_robot_file", monkeypatch)
+    out = tmp_path / "robot.yaml"
+    assert run("init", "r.urdf", "a.csv", "--out", out, "--columns", "c.yaml") == 1
+    assert seen.given == (Path("r.urdf"), [Path("a.csv")], out, Path("c.yaml"))
+    out.write_text("")
+    seen.given = ()
+    assert run("init", "r.urdf", "--out", out) == 1
+    assert seen.given == (), "nothing is written over"
+    assert run("init", "r.urdf", "--out", out, "--force") == 1
+    assert seen.given == (Path("r.urdf"), [], out, None)
