@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from plantar.campaign import replay
 from plantar.campaign.replay import IDENTIFIED, RIGID, ReplayRow, best_guess, replay_rows, scores
 from plantar.campaign.tables import simulator_table
+from plantar.logs.motion_log import MotionLog
+from plantar.twin.bush import GUESSES
 from plantar.twin.replay import Replayed, moved_onto, pitch_and_roll
 
 
@@ -65,3 +70,40 @@ def test_errors_of_a_replay() -> None:
 
 def test_a_robot_that_fell_keeps_its_rows() -> None:
     assert {row.error for row in replay_rows([], ["Squat"], ["soft"])} == {None}
+
+
+def test_feet_to_compare_and_the_hands_that_lead(monkeypatch: pytest.MonkeyPatch) -> None:
+    hand = object()
+    monkeypatch.setattr(
+        replay, "planned", lambda name, _: SimpleNamespace(hand=hand if name == "Manual" else None)
+    )
+    assert replay.hands_of(None, ("Tilt1", "Manual")) == {"Manual": hand}  # type: ignore[arg-type]
+    ours = {"left": object(), "right": object()}
+    monkeypatch.setattr(replay, "feet_of", lambda result: ours)
+    found = replay.candidates(None, ("LAAS", "JRL"))  # type: ignore[arg-type]
+    assert list(found) == [IDENTIFIED, RIGID, "LAAS", "JRL"]
+    assert found[IDENTIFIED] is ours
+    assert found[RIGID] is None
+    assert found["JRL"] == dict.fromkeys(ours, GUESSES["JRL"])
+
+
+def test_the_record_is_as_far_from_the_truth_as_its_attitude_errs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two waves, pitch of 3 and roll of 4 mrad: their root mean squares, in the motion's own line."""
+    time = np.arange(2001) / 200.0
+    still = np.tile(np.eye(3), (time.size, 1, 1))
+    wave = np.cos(2 * np.pi * (time - time.mean()))[:, None]
+    recorded = Rotation.from_rotvec(wave * [0.004, 0.003, 0.0]).as_matrix()
+    monkeypatch.setattr(
+        replay, "preset_named", lambda name: SimpleNamespace(physics=lambda bushes, robot: bushes)
+    )
+    for name in ("cut_feet", "describe", "planned", "rolled", "exact_columns"):
+        monkeypatch.setattr(replay, name, lambda *_: {})
+    log = MotionLog("sway", time, {"measured": time})
+    monkeypatch.setattr(
+        replay, "chest_attitude", lambda _, one: recorded if "measured" in one.columns else still
+    )
+    pitch, roll = replay.record_rows(None, [log], "clean", {})  # type: ignore[arg-type]
+    assert [(row.feet, row.motion, row.quantity, row.unit) for row in (pitch, roll)] == [
+        (replay.RECORD, "sway", "chest pitch", "rad"), (replay.RECORD, "sway", "chest roll", "rad"),
+    ]  # fmt: skip
+    assert (pitch.error, roll.error) == pytest.approx((0.003 / np.sqrt(2), 0.004 / np.sqrt(2)), rel=0.02)

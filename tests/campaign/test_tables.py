@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from plantar.campaign.compared import ParameterBeside
+from plantar.campaign.compared import DirectBeside, ParameterBeside
 from plantar.campaign.replay import ReplayRow
-from plantar.campaign.tables import simulator_table, table_1
+from plantar.campaign.tables import replay_table, simulator_table, table_1, table_2
 from plantar.report.content import Table
 
 ROW = ParameterBeside(
@@ -42,3 +42,34 @@ def test_the_mean_torque_of_a_robot_that_falls_in_one_motion_is_none() -> None:
     ]
     text = {row[0].text: row[7].text for row in simulator_table([*fallen, *stood]).rows}
     assert text == {"soft": "falls", "hard": "0.600"}
+
+
+def test_direct_validation_stands_by_axis() -> None:
+    rows = [DirectBeside("left", axis, error, 20.0, share, 1.5, 7.5, 6.54, 12.0)
+            for axis, error, share in (("roll", 1.02, 5.1), ("pitch", 0.98, 4.9))]  # fmt: skip
+    table = table_2(rows)
+    assert [[cell.text for cell in row] for row in table.rows] == [
+        ["pitch", "left", "0.980", "20.0", "4.9 %", "1.50", "7.5 %", "6.54", "12 %"],
+        ["roll", "left", "1.02", "20.0", "5.1 %", "1.50", "7.5 %", "6.54", "12 %"],
+    ]
+    assert [row[4].mark for row in table.rows] == ["good", "bad"], "up to five per cent of the largest torque"
+    assert [(column.heading, column.unit) for column in table.columns[2:6]] == [
+        ("mean |error|", "N·m"), ("largest |torque|", "N·m"), ("of largest", ""), ("paper's way", "N·m"),
+    ]  # fmt: skip
+
+
+def test_replays_stand_motion_by_motion_in_milliradians() -> None:
+    rows = [
+        ReplayRow("soft", "b", "chest pitch", "rad", 0.00123),
+        ReplayRow("soft", "a", "chest pitch", "rad", None),
+        ReplayRow("hard", "b", "chest pitch", "rad", 0.5),
+        ReplayRow("hard", "b", "left pitch torque", "N.m", 0.25),
+    ]
+    table = replay_table(rows)
+    assert [[cell.text for cell in row] for row in table.rows] == [
+        ["b", "soft", "1.23", "–"], ["b", "hard", "500", "0.250"], ["a", "soft", "falls", "–"],
+    ]  # fmt: skip
+    assert [(column.heading, column.unit) for column in table.columns] == [
+        ("motion", ""), ("feet", ""), ("chest pitch", "mrad"), ("left pitch torque", "N·m"),
+    ]  # fmt: skip
+    assert table.folded

@@ -7,6 +7,7 @@ import pytest
 
 from plantar.contact.slip_indicator import (
     SlipIndicator,
+    _without_drift,
     apart_speed,
     slides,
     turning,
@@ -132,3 +133,15 @@ def test_a_slide_that_is_sure_makes_no_other_one_sure() -> None:
     sure, possible = (TIME >= 8.0) & (TIME < 8.4), (TIME >= 12.0) & (TIME < 12.4)
     speed = np.where(sure, 0.006, np.where(possible, 0.004, 0.0005))
     assert np.array_equal(slides([indicator(speed)], speed, PERIOD), sure)
+
+
+def test_what_goes_on_and_what_jumps_is_drift_to_the_ends_and_what_is_short_is_not() -> None:
+    """A line leaves nothing, at its ends neither; a second's bump stays."""
+    line = 0.3 * TIME - 1.0
+    np.testing.assert_allclose(_without_drift(line, PERIOD)[:-10], 0.0, atol=1e-9)
+    jump = np.where(TIME > 10.0, 2.0, 0.0)
+    np.testing.assert_allclose(_without_drift(line + jump, PERIOD)[np.abs(TIME - 10.0) > 0.1], 0.0, atol=0.05)
+    bump = np.where(np.abs(TIME - 6.0) < 0.5, 1.0, 0.0)
+    left = _without_drift(bump, PERIOD)
+    assert left[np.abs(TIME - 6.0) < 0.4] == pytest.approx(1.0)
+    assert left[np.abs(TIME - 6.0) > 0.6] == pytest.approx(0.0)

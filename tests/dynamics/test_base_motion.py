@@ -10,7 +10,7 @@ import pytest
 
 from plantar import _core
 from plantar.conventions import Array
-from plantar.dynamics import Equation
+from plantar.dynamics import Equation, Motion
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, turned_motions
 from plantar.robot.kinematics import packed_frame
@@ -100,3 +100,26 @@ def test_an_imu_that_is_turned_in_its_own_axes_reads_as_one_mounted_so(robot: Ro
     (found,) = turned_motions(mounted(mount), equation, signals, slice(10, 40), [turn])
     expected = inertial_motion(mounted(mount @ turn), equation, signals, slice(10, 40))
     np.testing.assert_allclose(found.base, expected.base, atol=1e-9)
+
+
+def test_readings_that_are_late_are_taken_as_they_are_later(robot: RobotModel) -> None:
+    """Joints and turning go on evenly; an acceleration by encoders changes with the moment of theirs."""
+    equation, late, kept = Equation(robot.floating_model), 0.025, slice(10, 40)
+    time = 0.01 * np.arange(60)[:, None]
+    slopes = np.arange(1.0, 1.0 + len(robot.joint_names)) / 50
+
+    def motion(encoders: float, gyroscope: float, now: float = 0.0, turning: float = 0.0) -> Motion:
+        signals = InertialSignals(
+            slopes * (time + now), (time + turning) * [0.1, 0.2, 0.3], np.tile([0.0, 0.0, G], (60, 1)), 0.01,
+            by_encoders=np.tile([1.0, -2.0, 3.0], (60, 1)),
+        )  # fmt: skip
+        return inertial_motion(robot, equation, signals, kept, encoders, gyroscope)
+
+    turned, wanted = motion(0.0, late), motion(0.0, 0.0, turning=late)
+    np.testing.assert_allclose(turned.base, wanted.base, atol=1e-12)
+    read, wanted = motion(late, 0.0), motion(0.0, 0.0, now=late)
+    np.testing.assert_allclose(read.positions, wanted.positions, atol=1e-12)
+    placement = robot.frame(robot.required_imu.placement)[1]
+    moved = placement.rotation @ [late * 1.0, late * -2.0, late * 3.0]
+    np.testing.assert_allclose(read.base[:, :3], wanted.base[:, :3] + moved, atol=1e-12)
+    np.testing.assert_allclose(read.base[:, 3:], wanted.base[:, 3:], atol=1e-12)

@@ -41,6 +41,8 @@ def points_of(target: str, file: Path, foot: str) -> np.ndarray:
         for prim in stage.GetPrimAtPath(f"/World/biped/{foot}_ankle").GetChildren():
             if prim.GetName().startswith(f"{foot}_contact_"):
                 material = prim.GetChild("material")
+                bound = prim.GetRelationship("material:binding:physics").GetTargets()
+                assert bound == [material.GetPath()], "else none of its numbers counts"
                 k, c = (material.GetAttribute(f"physxMaterial:compliantContact{key}").Get()
                         for key in ("Stiffness", "Damping"))  # fmt: skip
                 friction = UsdPhysics.MaterialAPI(material).GetDynamicFrictionAttr().Get()

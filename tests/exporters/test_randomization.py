@@ -177,6 +177,9 @@ def test_a_vertical_stiffness_that_only_the_sum_shows_is_one_number(
     name = "left.z.stiffness", "right.z.stiffness"
     made, place = ranges(feet, tmp_path)
     assert made["correlation"][place[name[0]]][place[name[1]]] == 0
+    feet["notes"] = [{"code": "z_alone", "severity": "info", "text": "each foot"}]
+    made, place = ranges(feet, tmp_path)
+    assert made["correlation"][place[name[0]]][place[name[1]]] == 0
     feet["notes"] = [{"code": "z_sum_only", "severity": "info", "text": "only the sum"}]
     made, place = ranges(feet, tmp_path)
     assert made["correlation"][place[name[0]]][place[name[1]]] == 1

@@ -58,6 +58,14 @@ def test_a_foots_name_need_be_no_name_of_usd(tmp_path: Path) -> None:
     assert {"left_foot_1", "left_foot_1_bush_pitch"} <= names
 
 
+def test_a_plate_touches_the_ground_below_all_joints_of_its_bush(tmp_path: Path) -> None:
+    from pxr import UsdPhysics
+
+    stage = stage_of(written("layer", tmp_path))
+    plates = {str(prim.GetPath()) for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.CollisionAPI)}
+    assert plates == {f"/feet/{foot}/{foot}_bush_sole/plate" for foot in TRUTH}
+
+
 def test_overs_leave_the_users_stage_as_it_is(tmp_path: Path) -> None:
     from pxr import UsdPhysics
 

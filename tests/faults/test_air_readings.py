@@ -58,3 +58,11 @@ def test_a_foot_zeroed_under_load_is_not_in_the_air(robot: RobotModel) -> None:
     left = replace(robot.feet["left"], contact="always")
     zeroed = replace(robot, feet={**robot.feet, "left": left})
     assert found(zeroed, 0.05 * WEIGHT * np.eye(6)[2]) == []
+
+
+@pytest.mark.parametrize(("share", "told"), [(-0.14, True), (-0.16, False), (0.16, False), (0.14, True)])
+def test_a_foot_that_reads_much_does_not_hang_whatever_its_sign(
+    robot: RobotModel, share: float, told: bool
+) -> None:
+    """A load upside down is another fault, and no zero."""
+    assert bool(found(robot, share * WEIGHT * np.eye(6)[2])) == told

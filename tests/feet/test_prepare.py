@@ -130,6 +130,8 @@ def test_the_first_log_with_an_error_is_named(robot: RobotModel, logs: list[Moti
         checked_in_turn(robot, [logs[0], degrees("second"), degrees("third"), logs[1]])
     with pytest.raises(LogError, match="does not exist"):
         checked_in_turn(robot, logs_of([logs[0], "nowhere.csv", degrees("third")], robot))
+    with pytest.raises(DataError, match="second"):
+        checked_in_turn(robot, logs_of([logs[0], degrees("second"), "nowhere.csv"], robot))
 
 
 def test_the_logs_to_fit_alone_choose_the_filter(

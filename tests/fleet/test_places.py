@@ -55,6 +55,7 @@ def test_a_store_gives_back_what_it_was_given(place: str, tmp_path: Path) -> Non
     store.write("a/c/d.json", b"3")
     assert store.read("a/b.json") == b"2"
     assert store.names("a") == ["a/b.json", "a/c/d.json"]
+    assert store.read("a/b.json/c") is None, "nothing is below a file"
     assert list(store.read_each(["a/c/d.json", "none", "a/b.json"])) == [b"3", None, b"2"]
 
 
@@ -82,6 +83,9 @@ def test_a_store_that_cannot_be_used_is_told_apart_from_a_log_that_cannot_be_rea
     (tmp_path / "file").write_text("")
     with pytest.raises(PlaceError, match="cannot be written"):
         Store(str(tmp_path / "file")).write("x", b"")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(PlaceError, match="cannot be read"):
+        Store(str(tmp_path)).read("folder")
 
 
 def test_a_folder_has_a_stamp_and_a_content(tmp_path: Path) -> None:

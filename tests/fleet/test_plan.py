@@ -45,6 +45,21 @@ def test_logs_of_one_robot_and_day_are_one_group(tmp_path: Path, capsys: pytest.
     assert capsys.readouterr().out == out.read_text()
 
 
+def test_what_is_named_from_here_is_found_from_the_manifests_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make_logs(tmp_path, 0)
+    dated_log(tmp_path / "logs" / "one.parquet", MAY)
+    (tmp_path / "out").mkdir()
+    monkeypatch.chdir(tmp_path)
+    command = ("fleet", "plan", "logs/*.parquet", "--robot", "robot.yaml")
+    assert run(*command, "--out", Path("out") / "fleet.csv", "--quiet") == 0
+    (group,) = read_manifest(tmp_path / "out" / "fleet.csv")
+    assert Path(group.robot).samefile(tmp_path / "robot.yaml")
+    assert Path(group.robot).is_absolute()
+    assert [Path(log.place) for log in group.logs] == [tmp_path / "logs" / "one.parquet"]
+
+
 def test_without_a_date_in_the_log_its_name_or_file_says(tmp_path: Path) -> None:
     (name,) = make_logs(tmp_path, 1)
     (tmp_path / name).rename(tmp_path / "sway_2026-05-04-09-30.parquet")

@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plantar.model_selection.grid import Fits, fit_pieces
+from bush_data_sets import Rubber, campaign
+from plantar.model_selection.data_sets import prepare_data_sets
+from plantar.model_selection.grid import Fits, Pieces, fit_pieces
+from plantar.models import Elastoplastic
 
 RUNS, CANDIDATES, STATES, ROWS = 4, 8, 3, 40
 VALUES = np.array([1.0, -2.0])
@@ -87,3 +90,14 @@ def test_values_offsets_and_squares_are_those_of_the_chosen_rows() -> None:
         left = float(np.sum((chosen[:, 3] - design @ solution) ** 2))
         told = [*found.values[candidate], *found.offsets[candidate], found.squares[candidate]]
         assert told == pytest.approx([*solution, left], rel=1e-5)
+
+
+def test_states_are_tried_over_all_their_range_or_closely_about_known_ones() -> None:
+    model, prepared = Elastoplastic(), prepare_data_sets(campaign(0, Rubber())[:1], 5.0)
+    folds, shape = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared], np.array([[0.01]])
+    runs = len(prepared[0].motion.runs)
+    (everywhere,) = Pieces.of(model, prepared, folds, shape).initial_states
+    (nearby,) = Pieces.of(model, prepared, folds, shape, [np.full(runs, 0.9)]).initial_states
+    for run in range(runs):
+        assert everywhere[:, run] == pytest.approx([-0.9, -0.45, 0.0, 0.45, 0.9])
+        assert nearby[:, run] == pytest.approx([0.72, 0.81, 0.9, 0.99, 1.0])

@@ -312,6 +312,11 @@ def test_a_step_more_lands_and_lifts(robot: RobotModel) -> None:
 def test_what_cannot_be_used_is_said_in_a_line(robot: RobotModel) -> None:
     with pytest.raises(SettingsError, match="wrench_delay"):
         FootEstimator(robot, wrench_delay=3.0)
+    for taken, refused in (({"wrench_delay": -0.1}, {"wrench_delay": -0.101}), ({"cutoff": 0.1}, {"cutoff": 0.099}),
+                           ({"wrench_delay": 0.1}, {"wrench_delay": 0.101})):  # fmt: skip
+        FootEstimator(robot, **taken)  # type: ignore[arg-type]
+        with pytest.raises(SettingsError):
+            FootEstimator(robot, **refused)  # type: ignore[arg-type]
     with pytest.raises(RobotError, match="needs an IMU"):
         FootEstimator(replace(robot, imu=None))
     with pytest.raises(LogError, match=r"wrench\.left"):

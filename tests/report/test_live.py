@@ -65,7 +65,8 @@ def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, r
             assert view._feet[foot]._name.text == foot
             assert view._feet[foot]._name.position[1] == pytest.approx(side)
         estimate = replay.estimate("left", len(replay.time) - 1)
-        view.show(0.0, {"left": estimate})
+        view.show(9.0, {"left": replay.estimate("left", 0)})
+        view.show(0.0, {"left": estimate})  # begun anew, it is shown at once
         ankle = view._feet["left"]._ankle
         pitch, roll = (live.LARGER * one.deflection for one in (estimate.pitch, estimate.roll))
         turn = Rotation.from_quat(ankle.wxyz, scalar_first=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import date
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ from plantar.report.fleet import _effects, _level_cell, _trends, _verdict
 from plantar.report.tables import offset_table, parameter_table, skill_cell, validation_table
 from plantar.results.dynamics_rows import BaseParameter, InertialParameter, JointParameter
 from plantar.results.feet_rows import Offset, Parameter, ValidationRow
+from plantar.results.numbers import MISSING
 
 
 def texts(table: Table) -> list[list[str]]:
@@ -56,6 +58,10 @@ def test_scores_and_how_much_better_than_nothing() -> None:
         ["still", "left", "roll", "2.00", "2.50", "8.00", "25 %", "2.00", "none"],
     ]
     assert [skill_cell(one).mark for one in (row, lost, seen)] == ["good", "bad", "weak"]
+    half = ValidationRow("cross", "sway", "left", "roll", 1.0, 1.5, 8.0, 12.5, 2.0, 100)
+    unknown = [replace(half, zero_mean_abs=0.0), replace(half, mean_abs_error=float("nan"))]
+    assert [skill_cell(one).mark for one in (half, replace(half, mean_abs_error=1.01))] == ["good", "weak"]
+    assert [(skill_cell(one).text, skill_cell(one).mark) for one in unknown] == [(MISSING, "")] * 2
 
 
 def test_inertias_beside_the_cads() -> None:

@@ -56,19 +56,36 @@ def test_an_inertia_that_no_foot_has_draws_no_outline() -> None:
         assert found.outline_spread == pytest.approx(0.2 * 0.25 * reach), "a fifth of its length"
 
 
-def test_a_foot_that_is_a_solid_box_is_as_much_larger_as_those_of_known_robots() -> None:
-    """1.2 times as long, 1.35 times as wide, and its sole twice as deep as its centre of mass."""
-    length, width, height = 0.2, 0.1, 0.06
-    body = pin.Inertia.FromBox(1.5, length, width, height)
-    inertia = pin.Inertia(1.5, np.array([0.03, 0.0, -0.05]), np.array(body.inertia))
+def by_inertia(
+    length: float, centre: float, mass: float = 1.5
+) -> tuple[float, float, np.ndarray, str] | None:
+    """What is found of a box 0.1 m wide and 0.06 m high, its centre 30 mm ahead, under a leg of 0.8 m."""
+    body = pin.Inertia.FromBox(1.5, length, 0.1, 0.06)
+    inertia = pin.Inertia(mass, np.array([0.03, 0.0, centre]), np.array(body.inertia))
     robot = pin.Model()
     ankle = robot.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "ankle")
     robot.appendBodyToJoint(ankle, inertia, pin.SE3.Identity())
     limb = Limb("foot", ("ankle",), np.zeros(3), np.eye(3), "left")
-    found = _by_inertia(robot, limb, np.eye(3), 0.8)
+    return _by_inertia(robot, limb, np.eye(3), 0.8)
+
+
+def test_a_foot_that_is_a_solid_box_is_as_much_larger_as_those_of_known_robots() -> None:
+    """1.2 times as long, 1.35 times as wide, and its sole twice as deep as its centre of mass."""
+    found = by_inertia(0.2, -0.05)
     assert found is not None
     depth, spread, corners, _ = found
     assert depth == pytest.approx(-0.1)
     assert spread == pytest.approx(0.025)
-    assert np.ptp(corners, axis=0) == pytest.approx([1.2 * length, 1.35 * width])
+    assert np.ptp(corners, axis=0) == pytest.approx([1.2 * 0.2, 1.35 * 0.1])
     assert corners.mean(axis=0) == pytest.approx([0.03, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("length", "centre", "foot"),
+    [
+        (0.29, -0.05, True), (0.31, -0.05, False),  # with 1.2 of it, up to 0.45 of the leg
+        (0.2, -0.009, True), (0.2, -0.007, False), (0.2, -0.099, True), (0.2, -0.101, False),  # 2 to 25 % deep
+    ],
+)  # fmt: skip
+def test_a_box_that_is_no_foot_is_none(length: float, centre: float, foot: bool) -> None:
+    assert (by_inertia(length, centre) is not None) == foot

@@ -15,6 +15,7 @@ constexpr double LEAST_LEFT = 1e-3;  // share of what is known that must stay wh
 constexpr double OVER_GYROSCOPE = 20.0;  // times the noise that the gyroscope brings to both
 constexpr double OVER_ANGLES = 8.0;      // times what the noise of angles would be as a rate's
 constexpr double OVER_ROUNDING = 1e-4;   // times the whole column: less where the joints stand
+constexpr double ROUNDING = 1e-12;       // of a column's squares: what is left of it where the others say it all
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
@@ -102,12 +103,13 @@ void AxisRegression::find_deviations() noexcept {
 
 // Weighted by how much each group has to say.
 Untold AxisRegression::untold(Unknown column) const noexcept {
-  double weights = 0.0, sum = 0.0, squares = 0.0;
+  double weights = 0.0, sum = 0.0, squares = 0.0, whole = 0.0;
   for (int g = 0; g < used_; ++g) {
     const auto& r = groups_[g].triangle.r;
     weights += r[column][column] * r[column][column], sum += r[column][column] * r[column][UNKNOWNS];
+    for (int i = 0; i <= column; ++i) whole += r[i][column] * r[i][column];
   }
-  if (!(weights > 0.0)) return {};
+  if (!(weights > ROUNDING * whole)) return {};
   const double mean = sum / weights;
   for (int g = 0; g < used_; ++g) {
     const auto& r = groups_[g].triangle.r;

@@ -15,7 +15,7 @@ from plantar.feet.interval_width.between_recordings import axis_differences, rec
 from plantar.feet.interval_width.yaw_zero import fit_beside, yaw_zeros
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.regression_data import all_beside, tangent_blocks
 
 STIFFNESS = 400.0
 
@@ -69,3 +69,12 @@ def test_zeros_are_as_free_as_is_usual() -> None:
     assert free[0][0] == pytest.approx(STIFFNESS, rel=1e-3)
     held = fit_beside(zeros, blocks)
     assert 0 < held[1][0, 0] <= free[1][0, 0]
+    # Information adds up, and each value counts by its own.
+    size, found = len(without[0]), fit_blocks(all_beside(blocks, zeros.columns))
+    known = np.linalg.inv(found.covariance[: size + 2, : size + 2])
+    usual = 2 * float(found.std[size])
+    prior = np.diag([*np.zeros(size), *np.full(2, usual**-2)])
+    both = np.linalg.inv(known + prior)
+    held = fit_beside(zeros._replace(usual=usual), blocks)
+    np.testing.assert_allclose(held[1], both[:size, :size], rtol=1e-6)
+    np.testing.assert_allclose(held[0], (both @ known @ found.values[: size + 2])[:size], rtol=1e-6)

@@ -109,6 +109,11 @@ def test_a_memory_s_path_is_quicker_in_stances_and_without_its_drift() -> None:
     )
     path = path_of(walk, FOOT, "pitch").deflection
     assert np.std(path[200:-200]) == pytest.approx(0.5 * np.std(quick), rel=0.02)
+    own = replace(walk.raw[FOOT], deflection=np.outer(quick, [1.0, 2.0]), rate=np.outer(quick, [3.0, 4.0]))
+    found = [path_of(replace(walk, raw={FOOT: own}), FOOT, axis) for axis in ("pitch", "roll")]
+    for one, sizes in zip(found, ((1.0, 3.0), (2.0, 4.0)), strict=True):
+        assert one.deflection == pytest.approx(sizes[0] * path)
+        assert one.rate == pytest.approx(sizes[1] * path)
     standing = made_recording("sway", quick, TORQUE, rate=quick)
     assert np.array_equal(path_of(standing, FOOT, "pitch").deflection, quick)
     drift = AngleDrift(TIME[[0, -1]], np.array([0.0, 0.01]))

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from plantar.conventions import Array
-from plantar.fleet.statistics.changes import history_of
+from plantar.fleet.statistics.changes import _step, history_of
 from plantar.fleet.statistics.control_chart import Limits, limits_of, watch
 from plantar.fleet.statistics.random_effects import mean_of, nested_means, pooled
 from plantar.fleet.statistics.trend import trend_of
@@ -150,3 +150,19 @@ def test_an_outlier_is_beside_the_median_of_the_others() -> None:
     assert (change.size, change.low, change.high) == pytest.approx((size, size - scatter, size + scatter))
     assert found.trend is not None
     assert found.trend.days == 59
+
+
+def test_a_step_has_students_interval_of_the_days_within_two_months_of_it() -> None:
+    random = np.random.default_rng(4)
+    values = np.concatenate([random.normal(0, 1, 50), random.normal(3, 1, 50)])
+    time = 2.0 * np.arange(100)  # days: thirty of them within sixty on each side
+    step = _step((50, 55), [0, 50], time, values, np.ones(100))
+    before, behind = values[21:50], values[50:80]
+    wanted = stats.ttest_ind(behind, before).confidence_interval(0.95)
+    assert (step.low, step.high) == pytest.approx((wanted.low, wanted.high))
+    assert step.size == pytest.approx(behind.mean() - before.mean())
+    assert (step.first, step.seen) == (50, 55)
+    for starts, days in (([0, 1], 1), ([0, 99], 99)):
+        lonely = _step((days, 99), starts, time, values, np.ones(100))
+        assert (lonely.low, lonely.high) == (-np.inf, np.inf), "one day has no scatter"
+        assert lonely.size == pytest.approx(values[99] - values[days - 1])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,3 +56,18 @@ def test_one_motion_by_its_name_into_axes_of_ones_own(result: FeetResult) -> Non
     assert len(mine.lines) == 2
     with pytest.raises(DataError, match="no_such"):
         plot_torque(result, "left", "pitch", motions="no_such")
+
+
+def test_what_cannot_be_drawn_is_refused_with_what_can(result: FeetResult) -> None:
+    with pytest.raises(DataError, match=r"no foot has that name \(valid: left, right\)"):
+        plot_torque(result, "middle", "pitch")
+    with pytest.raises(DataError, match=r"no axis has that name \(valid: pitch, roll\)"):
+        plot_torque(result, "left", "yaw")
+    with pytest.raises(DataError, match="the result holds no residuals to draw"):
+        plot_torque(replace(result, residuals=None), "left", "pitch")
+    table = result.residuals
+    assert table is not None
+    right = [foot == "right" for foot in table["foot"].to_pylist()]
+    unused = table.set_column(table.column_names.index("used"), "used", [right])
+    with pytest.raises(DataError, match=r"no sample of the left foot was used \(valid: other motions\)"):
+        plot_torque(replace(result, residuals=unused), "left", "pitch")
