@@ -26,6 +26,11 @@ SHAKING_TIME = 0.1  # s over which shaking is judged
 SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
 
+HOISTING = 2.5  # s over which loads are averaged twice: no squat and no walk makes them more or less for so long
+# Of the weight: what feet carry together changes by less where one sensor's gain is off by a tenth
+HOISTED_SHARE = 0.1
+HOISTED_AROUND = 1.0  # s before and behind, in which the load is given over
+
 DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
 SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
 
@@ -137,12 +142,34 @@ def shaken(force: Array, weight: float, period: float) -> Mask:
     impact counts to it, as after a landing.
     """
     quick = np.nan_to_num(force - low_pass(force, period, min(SHAKING_BAND, 0.2 / period)))
-    total = np.concatenate([[0.0], np.cumsum(np.sum(quick**2, axis=1))])
-    place, reach = np.arange(len(force)), max(1, round(SHAKING_TIME / 2 / period))
-    last, first = np.minimum(place + reach + 1, len(force)), np.maximum(place - reach, 0)
-    size = np.sqrt((total[last] - total[first]) / (last - first))
+    reach = max(1, round(SHAKING_TIME / 2 / period))
+    size = np.sqrt(_means_around(np.sum(quick**2, axis=1), reach))
     struck = np.asarray(size > max(SHAKING_SHARE * weight, SHAKING_NOISE * float(np.percentile(size, 10))))
     return widened(struck, reach, round(SETTLING_TIME / period))
+
+
+def hoisted(load: Array, weight: float, period: float) -> Mask:
+    """Samples in which something else carries a part of the robot, as a rope or a hand under its arm, or lets go of it.
+
+    `load` (N,): what the feet carry together [N], `weight` [N] the robot's. As a rule, it is carried alike: what holds
+    a robot throughout changes nothing in time.
+    """
+    reach = max(1, round(HOISTING / 2 / period))
+    slow = _means_around(_means_around(load, reach), reach)
+    known = np.isfinite(slow)
+    if not known.any():
+        return known
+    apart = np.abs(slow - np.median(slow[known]))
+    return widened(np.asarray(apart > HOISTED_SHARE * weight), round(HOISTED_AROUND / period))
+
+
+def _means_around(values: Array, reach: int) -> Array:
+    """Mean (N,) of the values (N,) that are known up to `reach` samples before and behind each; NaN where none is."""
+    known, place = np.isfinite(values), np.arange(len(values))
+    last, first = np.minimum(place + reach + 1, len(values)), np.maximum(place - reach, 0)
+    total, count = (np.concatenate([[0.0], np.cumsum(each)]) for each in (np.where(known, values, 0.0), known))
+    number = count[last] - count[first]
+    return np.where(number > 0, total[last] - total[first], np.nan) / np.maximum(number, 1)
 
 
 def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:

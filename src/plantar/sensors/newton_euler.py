@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from plantar.contact.phases import shaken
-from plantar.conventions import GRAVITY, Array, Mask
+from plantar.contact.phases import hoisted, shaken
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.dynamics import Contact, model_parameters
 from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
@@ -206,12 +206,12 @@ def _along(
 
 
 def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
-    """The runs in which all is known and no sole slaps the floor, or, were all short, the longest one in which all is
-    known."""
+    """The runs in which all is known, no sole slaps the floor and nothing else takes over a part of the weight, or, were
+    all short, the longest one in which all is known."""
     sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
     # Unlike its values, one for each sample.
     whole = np.isfinite(np.sum([side.sum(axis=1) for side in sides], axis=0))
-    calm = runs(whole & ~_struck(robot, wrenches, period))
+    calm = runs(whole & ~_struck(robot, wrenches, period) & ~held_for_a_while(robot, wrenches, period))
     long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
     return long or [longest_run(whole)]
 
@@ -221,3 +221,10 @@ def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
     weight, feet = robot.mass * GRAVITY, range(len(robot.feet))
     shocks = [shaken(wrenches[:, 6 * place : 6 * place + 3], weight, period) for place in feet]
     return np.asarray(np.any(shocks, axis=0))
+
+
+def held_for_a_while(robot: RobotModel, wrenches: Array, period: float) -> Mask:
+    """Samples in which feet that read `wrenches` (n, 6 feet) carry otherwise than as a rule: the ground's force is not
+    all that acts on the robot."""
+    forces = wrenches.reshape(len(wrenches), -1, 6)[..., FORCE]
+    return hoisted(np.linalg.norm(forces, axis=2).sum(axis=1), robot.mass * GRAVITY, period)

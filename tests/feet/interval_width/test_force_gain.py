@@ -82,6 +82,17 @@ def test_a_hand_that_carries_some_weight_in_one_recording_is_no_gain(weighed: Ro
     assert beside == pytest.approx(0.0, abs=0.01)
 
 
+@pytest.mark.parametrize("beside", [1.0, 1.12])
+def test_a_rope_that_carries_a_quarter_for_a_while_is_no_gain(weighed: RobotModel, beside: float) -> None:
+    """The rest of the log has all of the weight, and tells a gain that is wrong as ever."""
+    log = scaled(record(sway(shift=0.3, duration=30.0)), left=beside, right=beside)
+    rope = 1 - 0.25 * ((log.time > 8) & (log.time < 16))
+    held = log.with_columns({name: rope * log.column(name) for name in log.columns if name.endswith("force.z")})
+    found = force_gain_errors(weighed, [prepared(weighed, held)])
+    assert found["left"].share == pytest.approx(beside - 1, abs=0.01)
+    assert found["left"].sure == (beside > 1)
+
+
 def test_zeros_on_a_light_robot_that_bounces_are_hardly_a_gain(weighed: RobotModel) -> None:
     """3 % of the weight are missing at all loads: no foot alone reads wrong, and what bounces is no hand."""
     log = record(sway(shift=0.3, duration=30.0))
