@@ -72,7 +72,9 @@ def test_a_rope_that_holds_the_robot_for_a_while_is_left_out() -> None:
     twin = hrp2.robot()
     sweep = checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
     rope = 1 - 0.25 * ((sweep.time > 12) & (sweep.time < 22))
-    held = sweep.with_columns({name: rope * sweep.column(name) for name in sweep.columns if "force.z" in name})
+    held = sweep.with_columns(
+        {name: rope * sweep.column(name) for name in sweep.columns if "force.z" in name}
+    )
     first, last = newton_euler_residuals(twin, held)
     assert 8 < len(first.signals.positions) * held.period < 12
     assert len(last.signals.positions) * held.period > 14

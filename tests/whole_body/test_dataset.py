@@ -34,7 +34,9 @@ def test_what_a_rope_holds_for_a_while_is_left_out(tmp_path: Path) -> None:
     """A quarter of the weight for 8 s of 30: eq. 1 holds before and after. Feet that stand always may read any load."""
     log = record(sway(duration=30.0))
     rope = 1 - 0.25 * ((log.time > 10) & (log.time < 18))
-    held = log.with_columns({name: rope * log.column(name) for name in log.columns if name.endswith("force.z")})
+    held = log.with_columns(
+        {name: rope * log.column(name) for name in log.columns if name.endswith("force.z")}
+    )
     body = Body.of(load_robot(write_robot(tmp_path)), floating=True)
     free, found = (prepare_whole(body, each, DynamicsSettings()) for each in (log, held))
     assert "held_for_a_while" not in {note.code for note in free.notes}
@@ -42,10 +44,10 @@ def test_what_a_rope_holds_for_a_while_is_left_out(tmp_path: Path) -> None:
     assert note.severity == "warning"
     time = found.log.time
     assert not found.valid[(time > 10.2) & (time < 17.8)].any()
-    np.testing.assert_array_equal(
-        found.valid[(time < 7) | (time > 21)], free.valid[(time < 7) | (time > 21)]
-    )
+    np.testing.assert_array_equal(found.valid[(time < 7) | (time > 21)], free.valid[(time < 7) | (time > 21)])
     always = replace(
         body.robot, feet={name: replace(foot, contact="always") for name, foot in body.robot.feet.items()}
     )
-    assert prepare_whole(replace(body, robot=always), held, DynamicsSettings()).valid.sum() == free.valid.sum()
+    assert (
+        prepare_whole(replace(body, robot=always), held, DynamicsSettings()).valid.sum() == free.valid.sum()
+    )

@@ -26,7 +26,9 @@ SHAKING_TIME = 0.1  # s over which shaking is judged
 SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
 
-HOISTING = 2.5  # s over which loads are averaged twice: no squat and no walk makes them more or less for so long
+HOISTING = (
+    2.5  # s over which loads are averaged twice: no squat and no walk makes them more or less for so long
+)
 # Of the weight: what feet carry together changes by less where one sensor's gain is off by a tenth
 HOISTED_SHARE = 0.1
 HOISTED_AROUND = 1.0  # s before and behind, in which the load is given over
@@ -167,7 +169,9 @@ def _means_around(values: Array, reach: int) -> Array:
     """Mean (N,) of the values (N,) that are known up to `reach` samples before and behind each; NaN where none is."""
     known, place = np.isfinite(values), np.arange(len(values))
     last, first = np.minimum(place + reach + 1, len(values)), np.maximum(place - reach, 0)
-    total, count = (np.concatenate([[0.0], np.cumsum(each)]) for each in (np.where(known, values, 0.0), known))
+    total, count = (
+        np.concatenate([[0.0], np.cumsum(each)]) for each in (np.where(known, values, 0.0), known)
+    )
     number = count[last] - count[first]
     return np.where(number > 0, total[last] - total[first], np.nan) / np.maximum(number, 1)
 

@@ -132,7 +132,9 @@ def _held(body: Body, log: MotionLog, notes: list[Note]) -> Mask:
     feet = body.robot.feet.values()
     if any(foot.contact == "always" for foot in feet):
         return np.zeros(len(log), dtype=bool)
-    held = held_for_a_while(body.robot, np.hstack([log.wrench(foot.wrench.name) for foot in feet]), log.period)
+    held = held_for_a_while(
+        body.robot, np.hstack([log.wrench(foot.wrench.name) for foot in feet]), log.period
+    )
     if held.any():
         text = (
             f"{log.name}: for {log.period * held.sum():.3g} s, first at t = {clock(log.time[int(held.argmax())])} s, "
