@@ -206,8 +206,8 @@ def _along(
 
 
 def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
-    """The runs in which all is known, no sole slaps the floor and nothing else takes over a part of the weight, or, were
-    all short, the longest one in which all is known."""
+    """The runs in which all is known, no sole slaps the floor and nothing else carries a part of the robot, or, were all
+    short, the longest one in which all is known."""
     sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
     # Unlike its values, one for each sample.
     whole = np.isfinite(np.sum([side.sum(axis=1) for side in sides], axis=0))
