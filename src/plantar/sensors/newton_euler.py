@@ -206,7 +206,7 @@ def _along(
 
 
 def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
-    """The runs in which all is known, no sole slaps the floor and nothing else carries a part of the robot, or, were all
+    """The runs in which all is known, no sole slaps the floor and nothing else carries the robot in part, or, were all
     short, the longest one in which all is known."""
     sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
     # Unlike its values, one for each sample.
