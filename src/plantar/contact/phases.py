@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from plantar.contact.reasons import LeftOut, Reason
 from plantar.conventions import Array, Mask
+from plantar.errors import clock
+from plantar.notes import Note
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import runs
 
@@ -26,9 +28,7 @@ SHAKING_TIME = 0.1  # s over which shaking is judged
 SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
 
-HOISTING = (
-    2.5  # s over which loads are averaged twice: no squat and no walk makes them more or less for so long
-)
+HOISTING = 2.5  # s over which loads are averaged twice: no squat and no walk changes them for so long
 # Of the weight: what feet carry together changes by less where one sensor's gain is off by a tenth
 HOISTED_SHARE = 0.1
 HOISTED_AROUND = 1.0  # s before and behind, in which the load is given over
@@ -151,18 +151,24 @@ def shaken(force: Array, weight: float, period: float) -> Mask:
 
 
 def hoisted(load: Array, weight: float, period: float) -> Mask:
-    """Samples in which something else carries a part of the robot, as a rope or a hand under its arm, or lets go of it.
-
-    `load` (N,): what the feet carry together [N], `weight` [N] the robot's. As a rule, it is carried alike: what holds
-    a robot throughout changes nothing in time.
-    """
+    """Samples in which a rope or a hand carries a part of the robot, or lets go of it: its feet carry together another
+    `load` (N,) [N] than as a rule, by a share of its `weight` [N]."""
     reach = max(1, round(HOISTING / 2 / period))
     slow = _means_around(_means_around(load, reach), reach)
-    known = np.isfinite(slow)
-    if not known.any():
-        return known
-    apart = np.abs(slow - np.median(slow[known]))
-    return widened(np.asarray(apart > HOISTED_SHARE * weight), round(HOISTED_AROUND / period))
+    known = slow[np.isfinite(slow)]
+    apart = np.abs(slow - (np.median(known) if known.size else 0.0)) > HOISTED_SHARE * weight
+    return widened(np.asarray(apart), round(HOISTED_AROUND / period))
+
+
+def hoisted_note(log: str, time: Array, held: Mask, then: str) -> Note:
+    """What is said of `hoisted` samples at `time` (N,) [s], and what is done `then`."""
+    lasts = (time[-1] - time[0]) * held.mean()
+    text = (
+        f"{log}: for {lasts:.3g} s, first at t = {clock(time[int(held.argmax())])} s, the feet carry over "
+        f"{100 * HOISTED_SHARE:.0f} % of the weight less or more than as a rule, as where a rope or a hand holds the "
+        f"robot for a while: {then}"
+    )
+    return Note("held_for_a_while", "info", text)
 
 
 def _means_around(values: Array, reach: int) -> Array:

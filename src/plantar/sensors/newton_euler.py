@@ -132,7 +132,7 @@ def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEule
         return []
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    runs_of_log = _known_runs(robot, signals, wrenches)
+    runs_of_log = _known_runs(robot, log, signals, wrenches)
     # Of a long recording each run may have a delay of its own, hours after the last one.
     labels = [
         f"{log.name} from {log.time[run.start]:.0f} s" if log.left_out else log.name for run in runs_of_log
@@ -205,13 +205,13 @@ def _along(
     )
 
 
-def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
+def _known_runs(robot: RobotModel, log: MotionLog, signals: InertialSignals, wrenches: Array) -> list[slice]:
     """The runs in which all is known, no sole slaps the floor and nothing else carries the robot in part, or, were all
     short, the longest one in which all is known."""
     sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
     # Unlike its values, one for each sample.
     whole = np.isfinite(np.sum([side.sum(axis=1) for side in sides], axis=0))
-    calm = runs(whole & ~_struck(robot, wrenches, period) & ~held_for_a_while(robot, wrenches, period))
+    calm = runs(whole & ~_struck(robot, wrenches, period) & ~held_for_a_while(robot, log))
     long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
     return long or [longest_run(whole)]
 
@@ -223,8 +223,10 @@ def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
     return np.asarray(np.any(shocks, axis=0))
 
 
-def held_for_a_while(robot: RobotModel, wrenches: Array, period: float) -> Mask:
-    """Samples in which feet that read `wrenches` (n, 6 feet) carry otherwise than as a rule: the ground's force is not
-    all that acts on the robot."""
-    forces = wrenches.reshape(len(wrenches), -1, 6)[..., FORCE]
-    return hoisted(np.linalg.norm(forces, axis=2).sum(axis=1), robot.mass * GRAVITY, period)
+def held_for_a_while(robot: RobotModel, log: MotionLog) -> Mask:
+    """Samples in which the feet carry otherwise than as a rule: the ground's force is not all that acts on the robot.
+    Of feet that stand always, whose loads have no zero, none."""
+    if any(foot.contact == "always" for foot in robot.feet.values()):
+        return np.zeros(len(log), dtype=bool)
+    forces = [log.wrench(foot.wrench.name)[:, FORCE] for foot in robot.feet.values()]
+    return hoisted(np.linalg.norm(forces, axis=2).sum(axis=0), robot.mass * GRAVITY, log.period)

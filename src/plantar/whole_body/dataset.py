@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 
-from plantar.contact.phases import HOISTED_SHARE
+from plantar.contact.phases import hoisted_note
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
-from plantar.errors import DataError, RobotError, clock
+from plantar.errors import DataError, RobotError
 from plantar.faults.imu import without_odd_accelerometer
 from plantar.faults.log_faults import check_log, refuse_impossible
 from plantar.logs.motion_log import MotionLog
@@ -106,7 +106,10 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     wrenches: dict[str, Array] = {}
     if body.equation.floating:
         base, known = _root(body, even, q, v, a, smooth, notes)
-        known &= ~_held(body, even, notes)
+        if (held := held_for_a_while(robot, even)).any():
+            known &= ~held
+            said = hoisted_note(log.name, even.time, held, "left out")
+            notes.append(replace(said, severity="warning"))
         wrenches = {name: smooth(even.wrench(foot.wrench.name)) for name, foot in robot.feet.items()}
     efforts = {name: smooth(values) for name in names if (values := even.joint(name, "effort")) is not None}
     motion = Motion(base, q, v, a)
@@ -125,24 +128,6 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
         text = f"{log.name}: {left_out} of {len(even)} samples left out (NaN, gaps and their surroundings)"
         notes.append(Note("left_out", "info", text))
     return Whole(even, motion, sense, wrenches, efforts, valid, tuple(notes))
-
-
-def _held(body: Body, log: MotionLog, notes: list[Note]) -> Mask:
-    """Where something else carries a part of the robot: the ground's force is not all that eq. 1 has to hold."""
-    feet = body.robot.feet.values()
-    if any(foot.contact == "always" for foot in feet):
-        return np.zeros(len(log), dtype=bool)
-    held = held_for_a_while(
-        body.robot, np.hstack([log.wrench(foot.wrench.name) for foot in feet]), log.period
-    )
-    if held.any():
-        text = (
-            f"{log.name}: for {log.period * held.sum():.3g} s, first at t = {clock(log.time[int(held.argmax())])} s, "
-            f"the feet carry more than {100 * HOISTED_SHARE:.0f} % of the weight less or more than as a rule, as where "
-            "a rope or a hand holds the robot for a while: left out"
-        )
-        notes.append(Note("held_for_a_while", "warning", text))
-    return held
 
 
 def _root(

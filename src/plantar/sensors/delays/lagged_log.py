@@ -41,7 +41,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     reach = int(np.ceil(SEARCHED / thin.period)) + 1
     signals = inertial_signals(robot, thin, CUTOFF)
     known = np.isfinite(np.hstack([*readings, signals.rate, signals.proper])).all(axis=1)
-    known &= ~held_for_a_while(robot, np.hstack([*readings]), thin.period)
+    known &= ~held_for_a_while(robot, thin)
     joints = np.pad(np.isfinite(signals.positions).all(axis=1), reach)  # nothing is known beyond the ends
     longest = longest_run(known & sliding_window_view(joints, 2 * reach + 1).all(axis=1))
     inner = slice(longest.start + reach, longest.stop - reach)

@@ -115,7 +115,7 @@ def estimate_wrench_delay(
         if again is not None and (found is None or _surer(again, found)):
             found = again
     searched = np.array([grid is not None for grid in grids])
-    alone = np.array([_accelerated(robot, log) and not _held(robot, log) for log in logs])
+    alone = np.array([_accelerated(robot, log) and not held_for_a_while(robot, log).any() for log in logs])
     if _in_doubt(lags, found, searched, alone):
         return _doubtful(robot, lags)
     return _unseen(robot, logs) if found is None else _told(robot, found)
@@ -138,12 +138,6 @@ def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
 
 def _accelerated(robot: RobotModel, log: MotionLog) -> bool:
     return robot.imu is not None and log.has_imu(robot.imu.name, "linear_acceleration")
-
-
-def _held(robot: RobotModel, log: MotionLog) -> bool:
-    """Whether something else carries a part of the robot for a while: it may well push throughout."""
-    wrenches = np.hstack([log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    return bool(held_for_a_while(robot, wrenches, log.period).any())
 
 
 def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask, alone: Mask) -> bool:
