@@ -179,7 +179,7 @@ def _means_around(values: Array, reach: int) -> Array:
         np.concatenate([[0.0], np.cumsum(each)]) for each in (np.where(known, values, 0.0), known)
     )
     number = count[last] - count[first]
-    return np.where(number > 0, total[last] - total[first], np.nan) / np.maximum(number, 1)
+    return np.asarray(np.where(number > 0, total[last] - total[first], np.nan) / np.maximum(number, 1))
 
 
 def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:
