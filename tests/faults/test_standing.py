@@ -140,11 +140,11 @@ def test_moments_of_exchanged_feet_are_no_unit(scale: float, code: str) -> None:
 def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
     monkeypatch: pytest.MonkeyPatch, tilt: MotionLog, left: float, unit: bool, code: str
 ) -> None:
-    stance, as_read, exchanged = Mock(), np.zeros((20, 2, 6, 3)), np.ones((20, 2, 6, 3))
-    stance.sides.return_value = Mock(misfit=0.3, lean=0.0, moment_arms=as_read)
-    stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left, moment_arms=exchanged)
+    stance, as_read = Mock(), Mock(misfit=0.3, lean=0.0)
+    stance.sides.return_value = as_read
+    stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
-    found = Finding("torque_unit", "columns 'wrench.*.torque.*': 8.4 times as large they would balance", True)
+    found = Finding("torque_unit", "columns 'wrench.*.torque.*': torques 8.4 times as large", True)
     monkeypatch.setattr(
         standing, "torque_unit", lambda *given: [found] if unit or given[2] is as_read else []
     )
@@ -163,7 +163,10 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
 ) -> None:
     """Of a robot on one foot, whose ankle's roll moves the centre of mass as far as the other foot is."""
     stance = Mock()
-    stance.sides.return_value = Mock(misfit=0.3, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)))
+    still = np.zeros((20, 3))
+    stance.sides.return_value = Mock(
+        misfit=0.3, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still
+    )
     stance.exchanged_wrenches.return_value.sides.return_value.misfit = 0.02
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})

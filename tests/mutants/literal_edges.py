@@ -79,8 +79,8 @@ LITERAL_EDGES = (
         ("sensors/delays/test_edges.py",),
     ),
     Mutant(
-        "sensors/delays/refined_delays.py", "half of what encoders leave in doubt of a delay",
-        "return UNIFORM * float(np.sqrt(max(moved**2", "return 0.5 * UNIFORM * float(np.sqrt(max(moved**2",
+        "sensors/delays/refined_delays.py", "half of what choices leave in doubt of a delay",
+        "return UNIFORM * float(np.sqrt(np.maximum(moved**2", "return 0.5 * UNIFORM * float(np.sqrt(np.maximum(moved**2",
         ("sensors/delays/test_edges.py",),
     ),
     Mutant(

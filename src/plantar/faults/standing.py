@@ -53,9 +53,9 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         return
     sides = stance.sides()
     as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
-    if found := list(torque_unit(robot, log, sides.moment_arms)):
+    if found := list(torque_unit(robot, log, sides)):
         # Moments of exchanged forces are so large that right torques look too small.
-        unit = list(torque_unit(robot, log, other.moment_arms)) or other.misfit > BETTER * as_is
+        unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
         yield from found if unit else [_swapped()]
         return
     if as_is <= NOTABLE and sides.lean <= LEANING:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.faults.stance import StanceSides
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
@@ -37,14 +38,16 @@ class _Scale(NamedTuple):
     feet: tuple[int, ...]
 
 
-def torque_unit(robot: RobotModel, log: MotionLog, moment_arms: Array) -> Iterator[Finding]:
+def torque_unit(robot: RobotModel, log: MotionLog, sides: StanceSides) -> Iterator[Finding]:
     """A fatal finding where the torques of all feet, or of one, follow the other moments at another scale.
 
     Without an accelerometer, where soles do not stand still either, nothing else would tell: another unit looks like
-    other rubber. moment_arms (n, feet, 6, 3) [m], as in `StanceSides`.
+    other rubber. They must do so also beside what follows the robot's acceleration: in a sway its angular momentum is
+    as large as one foot's torques.
     """
     if log.duration < SHORTEST:
         return
+    moment_arms = sides.moment_arms
     sensors = [foot.wrench.name for foot in robot.feet.values()]
     found = _scale(moment_arms, tuple(range(len(sensors))), "columns 'wrench.*.torque.*'")
     for place, sensor in enumerate(sensors):
@@ -56,7 +59,8 @@ def torque_unit(robot: RobotModel, log: MotionLog, moment_arms: Array) -> Iterat
     stands = found.squares < len(moment_arms) * ROUNDING**2
     if stands or found.correlation < FOLLOWS or turned < found.left:
         return
-    if 1 / ANOTHER_UNIT < found.scale < ANOTHER_UNIT:
+    beside = _scale(_beside_acceleration(sides), found.feet, found.columns)
+    if any(1 / ANOTHER_UNIT < one.scale < ANOTHER_UNIT for one in (found, beside)):
         return
     parts = [_scale(part, found.feet, found.columns) for part in np.array_split(moment_arms, 3)]
     moved = [part for part in parts if part.squares > STILL * found.squares]
@@ -65,7 +69,7 @@ def torque_unit(robot: RobotModel, log: MotionLog, moment_arms: Array) -> Iterat
     nearest = min(UNITS, key=lambda unit: abs(np.log(unit / found.scale)))
     like = f"; these look like {UNITS[nearest]}" if 1 / LIKE < nearest / found.scale < LIKE else ""
     times = f"{float(f'{found.scale:.2g}'):g} times"
-    text = f"{found.columns}: {times} as large they would balance the moments of the forces"
+    text = f"{found.columns}: torques {times} as large would balance the moments of the forces"
     yield Finding(TORQUE_UNIT, f"{text} (valid: torques in N·m{like})", True)
 
 
@@ -79,6 +83,14 @@ def _scale(moment_arms: Array, feet: tuple[int, ...], columns: str) -> _Scale:
     return _Scale(
         squares[1] * (1 - correlation**2), squares[1], correlation, together / squares[0], columns, feet
     )
+
+
+def _beside_acceleration(sides: StanceSides) -> Array:
+    """Changes of the moment arms (n, feet, 6, 3) [m] but for what follows the robot's acceleration about each axis."""
+    arms, pulled = sides.moment_arms - sides.moment_arms.mean(axis=0), _moving(np.cross(sides.up, sides.push))
+    power = np.sum(pulled**2, axis=0)
+    share = np.einsum("nfkx,nx->fkx", arms, pulled) / np.where(power > 0, power, np.inf)
+    return np.asarray(arms - share * pulled[:, None, None])
 
 
 def _moving(moments: Array) -> Array:

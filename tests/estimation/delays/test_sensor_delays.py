@@ -56,8 +56,9 @@ def residual(delays: Sequence[float | Array], seed: int) -> NewtonEulerResidual:
     measured, rates = np.array(readings)[:, INNER], np.array(rates)[:, INNER]
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
     signals, none = InertialSignals(*np.zeros((3, 0, 3)), PERIOD), np.zeros(0)
+    each = np.hstack([*measured])
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders[INNER], measured[0], signals, slice(0), none, measured[0], True
+        pair, measured, rates, by_encoders[INNER], each, signals, slice(0), none, 0 * each, True
     )
 
 
@@ -152,6 +153,7 @@ def test_encoders_that_are_apart_by_little_leave_the_feet_where_they_are(
     assert found.encoders == pytest.approx(0.0014 / (1 + 0.3**2), abs=2e-4)
     assert found.delay == pytest.approx(0.005, abs=3e-4)
     assert found.std < 0.0005
+    assert found.follows == pytest.approx(0.5, abs=0.1), "wherever fits then find the encoders"
 
 
 def test_feet_that_differ_and_encoders_that_lag_are_told(
@@ -165,6 +167,7 @@ def test_feet_that_differ_and_encoders_that_lag_are_told(
     lagging = sensor_delay(tmp_path, monkeypatch, 0.0, 0.0, 0.006)
     assert list(lagging.feet.values()) == pytest.approx([0.0, 0.0], abs=5e-4)
     assert lagging.encoders == pytest.approx(0.006, abs=7e-4)
+    assert lagging.follows == pytest.approx(0.5, abs=0.1)
     assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text
 
 

@@ -20,6 +20,7 @@ from plantar.sensors.delays.sensor_delay import _doubtful, _in_doubt, _surer
 LOG: Any = SimpleNamespace(period=0.005)
 LOG_OF_SOME_SIZE: Any = SimpleNamespace(period=0.005, size=1)
 RESIDUAL: Any = SimpleNamespace(balance=SimpleNamespace(cells=[]), pair=None)
+COMMON = 0.004  # s
 STEADY = np.zeros(0), np.zeros((3, 3))  # weights and inverse of delays that are the same throughout
 
 
@@ -29,15 +30,17 @@ def stepped(
     std: float,
     at: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> RefinedDelays | None:
-    """One step, where all delays together come out as `values` with `std` each, and the common one as 4 ± 1 ms."""
+    """One step, where all delays together come out as `values` with `std` each, and the common one as 4 ± 1 ms by both
+    ways of weighing."""
     covariance = std**2 * np.eye(3)
 
     def delays(_: object, held: np.ndarray | None = None) -> Delays:
         free = np.eye(3) if held is None or not len(held) else np.eye(3) - np.linalg.pinv(held) @ held
-        return Delays(free @ np.array(values), covariance, 60, *STEADY)
+        common = 0.0 if held is None else COMMON
+        return Delays(free @ np.array(values) + [common, common, 0.0], covariance, 60, *STEADY)
 
     monkeypatch.setattr(refining, "estimate_delays", delays)
-    monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(0.004, 0.001, 30.0, 20))
+    monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(COMMON, 0.001, 30.0, 20))
     return refining._step([LOG], [[RESIDUAL]], np.array(at))
 
 
@@ -68,8 +71,8 @@ def test_what_sensors_show_beside_the_common_delay_is_drawn_to_none_by_a_millise
     assert moved is not None
     beside = share * np.array(shown)
     assert moved.std == np.inf, "what is common is told anew beside sensors that are read in time"
-    assert moved.values == pytest.approx(beside + [0.004, 0.004, 0.0], rel=0.2)
-    left = np.array(shown) - moved.values
+    assert moved.values == pytest.approx(beside + [COMMON, COMMON, 0.0], rel=0.2)
+    left = np.array(shown) - (moved.values - [COMMON, COMMON, 0.0])
     found = stepped(monkeypatch, left, 0.0004, at=moved.values)
     assert found is not None
     assert found.std == 0.001
@@ -78,7 +81,7 @@ def test_what_sensors_show_beside_the_common_delay_is_drawn_to_none_by_a_millise
     assert found.values[-1] == pytest.approx(beside[-1])
     unknown = stepped(monkeypatch, (0.0, 0.0, 0.0012), 0.00096)
     assert unknown is not None
-    assert unknown.values == pytest.approx([0.004, 0.004, 0.0]), "known no better than by what is usual"
+    assert unknown.values == pytest.approx([COMMON, COMMON, 0.0]), "known no better than by what is usual"
     assert unknown.encoders_unsure == pytest.approx(0.001)
 
 
@@ -96,6 +99,23 @@ def test_a_common_delay_is_anywhere_between_what_encoders_in_time_and_apart_make
 
     monkeypatch.setattr(refining, "estimate_delays", delays)
     monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(0.004, 0.001, 30.0, 20))
+    found = refining._step([LOG], [[RESIDUAL]], np.zeros(3))
+    assert found is not None
+    assert found.std == pytest.approx(np.sqrt(0.001**2 + beside / 3))
+
+
+@pytest.mark.parametrize(("weighed", "beside"), [(0.0065, 0.0025**2 - 0.0008**2), (0.0047, 0.0)])
+def test_a_common_delay_is_anywhere_between_what_two_ways_of_weighing_make_of_it(
+    monkeypatch: pytest.MonkeyPatch, weighed: float, beside: float
+) -> None:
+    """Known to 1 ms with the one and to 0.6 ms with the other, they are 0.8 ms apart by chance."""
+
+    def delays(_: object, held: np.ndarray | None = None) -> Delays:
+        value = 0.0 if held is None else weighed
+        return Delays(np.array([value, value, 0.0]), 0.0006**2 * np.eye(3), 60, *STEADY)
+
+    monkeypatch.setattr(refining, "estimate_delays", delays)
+    monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(COMMON, 0.001, 30.0, 20))
     found = refining._step([LOG], [[RESIDUAL]], np.zeros(3))
     assert found is not None
     assert found.std == pytest.approx(np.sqrt(0.001**2 + beside / 3))

@@ -104,8 +104,9 @@ def refined_delays(
             residuals = tuple(residual for own in tried for residual in own)
             pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
             unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
+            follows = _follows(residuals, step)
             residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
-            return replace(step, unsteady=unsteady, residuals=residuals)
+            return replace(step, unsteady=unsteady, follows=follows, residuals=residuals)
         near = moved < SETTLED and all(one.stands for own in tried for one in own)
         tried = [[one.read_later(at - read_at) for one in own] for own in tried] if near else None
     return None
@@ -166,11 +167,10 @@ def _step(
         return None
     by, std, freedom = left
     if free is not None and not differ.any():
-        std = float(np.hypot(std, _by_encoders(balances, contrasts)))
+        std = float(np.hypot(std, _by_choice(balances, contrasts, by[0], std)))
     unsure = np.where(differ, [*np.zeros(len(at) - 1), std], unsure)
     beside = float(unsure[:-1].max()), float(unsure[-1])
-    follows = 0.0 if free is None else float(np.mean(free.covariance[:-1, -1]) / free.covariance[-1, -1])
-    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside, follows, told)
+    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside, told=told)
 
 
 def _left(
@@ -195,18 +195,32 @@ def _left(
     return np.append(np.full(count - 1, common.value), 0.0), common.std, common.freedom
 
 
-def _by_encoders(balances: Sequence[Balance], contrasts: Array) -> float:
-    """Deviation of the feet's common delay [s] for encoders that are read as tried, or as far apart as it seems.
+def _by_choice(balances: Sequence[Balance], contrasts: Array, common: float, std: float) -> float:
+    """Deviation of the feet's common delay [s] for what is chosen without being known: that encoders are read as tried,
+    and that cells weigh as in the `common` delay, of deviation `std`, and not as where sensors are told apart.
 
-    It is somewhere between what it is with the one and with the other, beyond what one more delay to be found moves it
-    by chance (J. A. Hausman, Econometrica 46, 1978): too little for a delay of the encoders' own, and not nothing.
+    It is somewhere between what it is with the one and with the other, beyond what one more delay to be found, or other
+    weights, move it by chance (J. A. Hausman, Econometrica 46, 1978).
     """
     together, apart = (estimate_delays(balances, held) for held in (contrasts, contrasts[:-1]))
     if together is None or apart is None:
         return 0.0
-    moved = apart.values[0] - together.values[0]
-    chance = max(apart.covariance[0, 0] - together.covariance[0, 0], 0.0)
-    return UNIFORM * float(np.sqrt(max(moved**2 - chance, 0.0)))
+    moved = np.array([apart.values[0], common]) - together.values[0]
+    chance = np.array([apart.covariance[0, 0], std**2]) - together.covariance[0, 0]
+    return UNIFORM * float(np.sqrt(np.maximum(moved**2 - np.maximum(chance, 0.0), 0.0).sum()))
+
+
+def _follows(residuals: Sequence[NewtonEulerResidual], found: RefinedDelays) -> float:
+    """By how much the feet's delay moves with the encoders', as it is found here, near the delays `found`."""
+    count = len(found.values)
+    contrasts = _contrasts(count - 1)
+    feet = np.full(count - 1, found.feet_differ)
+    held = contrasts[~np.append(feet, False)] if found.feet_differ or found.encoders_differ else None
+    later = [one.read_later(SETTLED * contrasts[-1]) for one in residuals]
+    sides = [_left(own, held, count) for own in (residuals, later)]
+    if sides[0] is None or sides[1] is None:
+        return 0.0
+    return float(np.mean((sides[1][0] - sides[0][0])[:-1])) / SETTLED
 
 
 def _contrasts(feet: int) -> Array:
