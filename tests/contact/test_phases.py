@@ -16,6 +16,7 @@ from plantar.contact.phases import (
     FootContact,
     carried_weight,
     detect_contact,
+    hoisted,
     joined,
     shaken,
     widened,
@@ -169,6 +170,18 @@ def test_what_shakes_for_most_of_a_log_is_still_shaken() -> None:
     struck = shaken(force, WEIGHT, 0.005)
     assert struck[time > 7.2].all()
     assert not struck[time < 6.8].any()
+
+
+@pytest.mark.parametrize(("share", "held"), [(-0.25, True), (0.25, True), (-0.08, False)])
+def test_a_rope_that_carries_a_part_for_a_while_is_told(share: float, held: bool) -> None:
+    """5 s of 30; the squats beside move the load by as much, and quickly."""
+    time = np.arange(6000) * 0.005
+    load = WEIGHT * (1 + 0.15 * np.sin(2 * np.pi * 0.7 * time) + share * ((time > 12) & (time < 17)))
+    load[:100] = np.nan
+    found = hoisted(load, WEIGHT, 0.005)
+    assert found[(time > 12.5) & (time < 16.5)].all() == held
+    assert not found[(time < 10) | (time > 19)].any()
+    assert not hoisted(load * np.nan, WEIGHT, 0.005).any()
 
 
 def test_stretches_are_widened_and_joined() -> None:

@@ -58,7 +58,7 @@ STANDING_SOLES = (
     Mutant(
         "sensors/delays/sensor_delay.py",
         "soles raise doubt",
-        "missed & ~pushed & accelerated[searched]",
+        "missed & ~pushed & alone[searched]",
         "missed & ~pushed",
         ("sensors/delays/test_edges.py",),
     ),

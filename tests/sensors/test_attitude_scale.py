@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sway
-from biped_robot import make_robot
+from biped_robot import AS_USUAL, Frame, Mounting, make_robot
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -30,12 +31,13 @@ def logs() -> list[MotionLog]:
     return [record(sway(f"sway_{seed}", seed=seed, duration=20.0)) for seed in (1, 2)]
 
 
-def scaled(log: MotionLog, by: float) -> MotionLog:
-    """Tilts and rates times `by`, heading as it is; the accelerometer keeps telling the truth."""
-    quaternion = log.orientation("chest")
+def scaled(log: MotionLog, by: float, mounting: Mounting = AS_USUAL) -> MotionLog:
+    """The trunk's tilts and rates times `by`, heading as it is; the accelerometer keeps telling the truth."""
+    quaternion, mount = log.orientation("chest"), Rotation.from_matrix(mounting.imu.rotation)
     assert quaternion is not None
-    yaw, pitch, roll = Rotation.from_quat(quaternion, scalar_first=True).as_euler("ZYX").T
-    told = Rotation.from_euler("ZYX", np.column_stack([yaw, by * pitch, by * roll]))
+    trunk = Rotation.from_quat(quaternion, scalar_first=True) * mount.inv()
+    yaw, pitch, roll = trunk.as_euler("ZYX").T
+    told = Rotation.from_euler("ZYX", np.column_stack([yaw, by * pitch, by * roll])) * mount
     columns = dict(zip("wxyz", told.as_quat(scalar_first=True).T, strict=True))
     rates = {
         f"imu.chest.angular_velocity.{axis}": by * rate
@@ -89,6 +91,19 @@ def test_an_imu_higher_than_the_file_says_is_no_scale(robot: RobotModel, logs: l
     higher = replace(robot, imu=replace(robot.imu, placement=placement))
     assert not told(identify_feet(higher, logs, settings=KNOWN))
     assert told(identify_feet(higher, [scaled(log, 0.9) for log in logs], settings=KNOWN))
+
+
+@pytest.mark.parametrize("rpy", [(0.2, np.pi / 2, 0.3), (np.pi / 2, 0.0, 0.0), (np.pi, 0.1, 0.0)])
+def test_an_imu_that_is_mounted_on_its_side_tells_its_scale_as_well(
+    tmp_path: Path, rpy: tuple[float, float, float]
+) -> None:
+    """Its own z axis lies level, or points down: what tilts is the axis that points up at rest."""
+    mounting = Mounting(imu=Frame((-0.05, 0.02, 0.3), rpy))
+    sideways = make_robot(tmp_path, mounting)
+    logs = [record(sway(f"sway_{seed}", seed=seed, duration=20.0), mounting) for seed in (1, 2)]
+    assert not told(identify_feet(sideways, logs, settings=KNOWN))
+    (text,) = told(identify_feet(sideways, [scaled(log, 0.94, mounting) for log in logs], settings=KNOWN))
+    assert float(text.split("shows ")[1].split()[0]) == pytest.approx(0.94, abs=0.005)
 
 
 def made(share: float, height: float, rest: float) -> AttitudeScale:

@@ -67,6 +67,36 @@ def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path
     assert CLOCK * 0.02 <= found.std < CLOCK * 0.1
 
 
+def test_a_rope_that_holds_the_robot_for_a_while_is_left_out() -> None:
+    """A quarter of the weight, for ten seconds of 40: before and after, the ground's force is all that acts."""
+    twin = hrp2.robot()
+    sweep = checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+    rope = 1 - 0.25 * ((sweep.time > 12) & (sweep.time < 22))
+    held = sweep.with_columns(
+        {name: rope * sweep.column(name) for name in sweep.columns if "force.z" in name}
+    )
+    first, last = newton_euler_residuals(twin, held)
+    assert 8 < len(first.signals.positions) * held.period < 12
+    assert len(last.signals.positions) * held.period > 14
+    free, found = (estimate_wrench_delay(twin, [log]) for log in (sweep, held))
+    assert found.measured
+    assert found.delay == pytest.approx(free.delay, abs=0.002)
+
+
+def test_a_rope_in_a_log_that_never_closes_says_nothing_of_moments() -> None:
+    """Wrenches of another motion cannot follow: that is doubted, but where the robot was held for a while."""
+    twin = hrp2.robot()
+    sweep = checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+    names = [name for name in sweep.columns if name.startswith("wrench.")]
+    other = sweep.with_columns({name: sweep.column(name)[::-1].copy() for name in names})
+    rope = 1 - 0.25 * ((sweep.time > 12) & (sweep.time < 22))
+    held = other.with_columns({name: rope * other.column(name) for name in names if "force.z" in name})
+    free, found = (estimate_wrench_delay(twin, [log]) for log in (other, held))
+    assert free.doubtful
+    assert not found.doubtful
+    assert not found.measured
+
+
 def test_a_log_with_gaps_shows_its_delay_in_every_run() -> None:
     """One run of nine seconds alone, the first one of a motion that begins slowly, may be off by 10 ms."""
     twin = hrp2.robot()

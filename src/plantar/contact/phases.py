@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from plantar.contact.reasons import LeftOut, Reason
 from plantar.conventions import Array, Mask
+from plantar.errors import clock
+from plantar.notes import Note
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import runs
 
@@ -25,6 +27,11 @@ SHAKING_BAND = 20.0  # Hz: no robot that stands is loaded on purpose so fast
 SHAKING_TIME = 0.1  # s over which shaking is judged
 SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
+
+HOISTING = 2.5  # s over which loads are averaged twice: no squat and no walk changes them for so long
+# Of the weight: what feet carry together changes by less where one sensor's gain is off by a tenth
+HOISTED_SHARE = 0.1
+HOISTED_AROUND = 1.0  # s before and behind, in which the load is given over
 
 DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
 SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
@@ -137,12 +144,42 @@ def shaken(force: Array, weight: float, period: float) -> Mask:
     impact counts to it, as after a landing.
     """
     quick = np.nan_to_num(force - low_pass(force, period, min(SHAKING_BAND, 0.2 / period)))
-    total = np.concatenate([[0.0], np.cumsum(np.sum(quick**2, axis=1))])
-    place, reach = np.arange(len(force)), max(1, round(SHAKING_TIME / 2 / period))
-    last, first = np.minimum(place + reach + 1, len(force)), np.maximum(place - reach, 0)
-    size = np.sqrt((total[last] - total[first]) / (last - first))
+    reach = max(1, round(SHAKING_TIME / 2 / period))
+    size = np.sqrt(_means_around(np.sum(quick**2, axis=1), reach))
     struck = np.asarray(size > max(SHAKING_SHARE * weight, SHAKING_NOISE * float(np.percentile(size, 10))))
     return widened(struck, reach, round(SETTLING_TIME / period))
+
+
+def hoisted(load: Array, weight: float, period: float) -> Mask:
+    """Samples in which a rope or a hand carries a part of the robot, or lets go of it: its feet carry together another
+    `load` (N,) [N] than as a rule, by a share of its `weight` [N]."""
+    reach = max(1, round(HOISTING / 2 / period))
+    slow = _means_around(_means_around(load, reach), reach)
+    known = slow[np.isfinite(slow)]
+    apart = np.abs(slow - (np.median(known) if known.size else 0.0)) > HOISTED_SHARE * weight
+    return widened(np.asarray(apart), round(HOISTED_AROUND / period))
+
+
+def hoisted_note(log: str, time: Array, held: Mask, then: str) -> Note:
+    """What is said of `hoisted` samples at `time` (N,) [s], and what is done `then`."""
+    lasts = (time[-1] - time[0]) * held.mean()
+    text = (
+        f"{log}: for {lasts:.3g} s, first at t = {clock(time[int(held.argmax())])} s, the feet carry over "
+        f"{100 * HOISTED_SHARE:.0f} % of the weight less or more than as a rule, as where a rope or a hand holds the "
+        f"robot for a while: {then}"
+    )
+    return Note("held_for_a_while", "info", text)
+
+
+def _means_around(values: Array, reach: int) -> Array:
+    """Mean (N,) of the values (N,) that are known up to `reach` samples before and behind each; NaN where none is."""
+    known, place = np.isfinite(values), np.arange(len(values))
+    last, first = np.minimum(place + reach + 1, len(values)), np.maximum(place - reach, 0)
+    total, count = (
+        np.concatenate([[0.0], np.cumsum(each)]) for each in (np.where(known, values, 0.0), known)
+    )
+    number = count[last] - count[first]
+    return np.asarray(np.where(number > 0, total[last] - total[first], np.nan) / np.maximum(number, 1))
 
 
 def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:

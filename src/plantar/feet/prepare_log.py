@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.contact.deflection import BushState, foot_motions, loaded
 from plantar.contact.imu_turn import imu_turn_effects
-from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
+from plantar.contact.phases import FootContact, carried_weight, detect_contact, hoisted_note, shaken
 from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
@@ -27,6 +27,7 @@ from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel, check_feet
 from plantar.sensors.air_zero import AirZero, air_zero
 from plantar.sensors.attitude_scale import AttitudeScale, log_attitude_scale
+from plantar.sensors.newton_euler import held_for_a_while
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.signals.dropouts import without_dropouts
 from plantar.signals.filters import differentiate, low_pass
@@ -218,6 +219,8 @@ def _contacts(
         whose = "the URDF weighs" if robot.weighed is None else "the robot was weighed as"
         text = f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where {whose} {robot.mass:.1f} kg"
         notes.append(Note("weight", "warning", text))
+    if (held := held_for_a_while(robot, log)).any():
+        notes.append(hoisted_note(log.name, log.time, held, "no delay is looked for there"))
     weight = carried if carried > 0.3 * model_weight else model_weight
     contacts = detect_contact(force, always, weight, log.period)
     stances = {name: stances_of(contacts[name], force[name], weight, log.period) for name in bushes}

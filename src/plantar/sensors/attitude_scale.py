@@ -96,9 +96,11 @@ def log_attitude_scale(
     found, every = AttitudeScale(), enough_of(period)
     edge, thinned = round(EDGE / (every * period)), max(1, int(1 / (KEPT * TOLD * every * period)))
     step = thinned * every * period
-    horizontal = rotation_from_quaternion(unit)[:, :2, 2]
+    to_world = rotation_from_quaternion(unit)
     for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period, every):
-        believed = horizontal[run]
+        # Of what points up at rest, however the IMU is mounted: its own z axis may lie level, and turn as it yaws.
+        up = np.median(to_world[run][:, 2], axis=0)
+        believed = to_world[run][:, :2] @ (up / np.linalg.norm(up))
         tilt = low_pass(believed, period, TOLD, every=every)
         higher = lean_of(np.zeros_like(believed), believed, height, period, every)
         signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge:thinned]  # (n, 2, 3)

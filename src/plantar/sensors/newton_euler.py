@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from plantar.contact.phases import shaken
-from plantar.conventions import GRAVITY, Array, Mask
+from plantar.contact.phases import hoisted, shaken
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.dynamics import Contact, model_parameters
 from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
@@ -132,7 +132,7 @@ def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEule
         return []
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    runs_of_log = _known_runs(robot, signals, wrenches)
+    runs_of_log = _known_runs(robot, log, signals, wrenches)
     # Of a long recording each run may have a delay of its own, hours after the last one.
     labels = [
         f"{log.name} from {log.time[run.start]:.0f} s" if log.left_out else log.name for run in runs_of_log
@@ -205,13 +205,13 @@ def _along(
     )
 
 
-def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
-    """The runs in which all is known and no sole slaps the floor, or, were all short, the longest one in which all is
-    known."""
+def _known_runs(robot: RobotModel, log: MotionLog, signals: InertialSignals, wrenches: Array) -> list[slice]:
+    """The runs in which all is known, no sole slaps the floor and nothing else carries the robot in part, or, were all
+    short, the longest one in which all is known."""
     sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
     # Unlike its values, one for each sample.
     whole = np.isfinite(np.sum([side.sum(axis=1) for side in sides], axis=0))
-    calm = runs(whole & ~_struck(robot, wrenches, period))
+    calm = runs(whole & ~_struck(robot, wrenches, period) & ~held_for_a_while(robot, log))
     long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
     return long or [longest_run(whole)]
 
@@ -221,3 +221,12 @@ def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
     weight, feet = robot.mass * GRAVITY, range(len(robot.feet))
     shocks = [shaken(wrenches[:, 6 * place : 6 * place + 3], weight, period) for place in feet]
     return np.asarray(np.any(shocks, axis=0))
+
+
+def held_for_a_while(robot: RobotModel, log: MotionLog) -> Mask:
+    """Samples in which the feet carry otherwise than as a rule: the ground's force is not all that acts on the robot.
+    Of feet that stand always, whose loads have no zero, none."""
+    if any(foot.contact == "always" for foot in robot.feet.values()):
+        return np.zeros(len(log), dtype=bool)
+    forces = [log.wrench(foot.wrench.name)[:, FORCE] for foot in robot.feet.values()]
+    return hoisted(np.linalg.norm(forces, axis=2).sum(axis=0), robot.mass * GRAVITY, log.period)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 
+from plantar.contact.phases import hoisted_note
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
@@ -18,6 +19,7 @@ from plantar.faults.log_faults import check_log, refuse_impossible
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors.newton_euler import held_for_a_while
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import evenly_sampled
 from plantar.signals.segments import run_ends
@@ -104,6 +106,10 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     wrenches: dict[str, Array] = {}
     if body.equation.floating:
         base, known = _root(body, even, q, v, a, smooth, notes)
+        if (held := held_for_a_while(robot, even)).any():
+            known &= ~held
+            said = hoisted_note(log.name, even.time, held, "left out")
+            notes.append(replace(said, severity="warning"))
         wrenches = {name: smooth(even.wrench(foot.wrench.name)) for name, foot in robot.feet.items()}
     efforts = {name: smooth(values) for name in names if (values := even.joint(name, "effort")) is not None}
     motion = Motion(base, q, v, a)

@@ -12,7 +12,12 @@ from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, codes
 from plantar.conventions import GRAVITY, NORMAL95
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.force_gain import GainError, _mass_deviation, force_gain_errors
+from plantar.feet.interval_width.force_gain import (
+    GainError,
+    _inverse_gains,
+    _mass_deviation,
+    force_gain_errors,
+)
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
@@ -80,6 +85,40 @@ def test_a_hand_that_carries_some_weight_in_one_recording_is_no_gain(weighed: Ro
     )
     assert alone == pytest.approx(-0.1, abs=0.02)
     assert beside == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize("beside", [1.0, 1.12])
+def test_a_rope_that_carries_a_quarter_for_a_while_is_no_gain(weighed: RobotModel, beside: float) -> None:
+    """The rest of the log has all of the weight, and tells a gain that is wrong as ever."""
+    log = scaled(record(sway(shift=0.3, duration=30.0)), left=beside, right=beside)
+    rope = 1 - 0.25 * ((log.time > 8) & (log.time < 16))
+    held = log.with_columns(
+        {name: rope * log.column(name) for name in log.columns if name.endswith("force.z")}
+    )
+    found = force_gain_errors(weighed, [prepared(weighed, held)])
+    assert found["left"].share == pytest.approx(beside - 1, abs=0.01)
+    assert found["left"].sure == (beside > 1)
+
+
+def windows_of(share: float, load: float = 1.0, left: float = 1.0) -> np.ndarray:
+    """Both feet's forces over the weight (20, 2), the left one carrying about a `share` of the `load`."""
+    shares = share + 0.03 * np.random.default_rng(round(1000 * share)).standard_normal(20)
+    return np.column_stack([left * load * shares, load * (1 - shares)])
+
+
+def test_a_load_that_the_robot_carries_in_some_recordings_is_no_gain() -> None:
+    """A fifth of its weight in two of five; the left foot carries a little more of it, which looked like +45 %."""
+    alike = (np.eye(2) - 0.5) / 0.1**2
+    free = [windows_of(share) for share in (0.50, 0.48, 0.52)]
+    inverse, covariance = _inverse_gains([*free, windows_of(0.55, 1.2), windows_of(0.56, 1.2)], alike)
+    np.testing.assert_allclose(inverse, 1.0, atol=0.01)
+    assert np.sqrt(covariance[0, 0]) < 0.05
+    for shares in (
+        (1.0, 0.0),
+        (0.5, 0.3, 0.7),
+    ):  # a gain shows as it did: on single legs the sums differ as much
+        inverse, _ = _inverse_gains([windows_of(share, left=0.7) for share in shares], alike)
+        np.testing.assert_allclose(1 / inverse, [0.7, 1.0], atol=0.02)
 
 
 def test_zeros_on_a_light_robot_that_bounces_are_hardly_a_gain(weighed: RobotModel) -> None:

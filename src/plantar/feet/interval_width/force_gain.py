@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from plantar.contact.phases import HOISTED_SHARE
 from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array, Axis
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
@@ -27,6 +28,8 @@ SCATTER = 0.005  # of the weight, by which all of a recording's sums may be off:
 BENT = 0.002  # of the weight, by which its sums may follow the weight from foot to foot: sensors are not quite linear
 HAND = 2.0  # times the scatter of a recording's sums: what a hand may carry on average that carries now more, now less
 REWEIGHTED = 5  # rounds
+LOADED = 0.03  # of the weight, by which a recording's sums are off beside gains that suit the others
+STEADY = 0.02  # of the weight: scatter of a recording's sums while nobody holds the robot
 ALIKE = 10.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
 LEAST_GAIN = 1e-4  # share: a sensor without any gain error, and a deviation that stays finite
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
@@ -118,7 +121,17 @@ def _inverse_gains(windows: Sequence[Array], alike: Array) -> tuple[Array, Array
 
     alike: prior precision (feet, feet).
     """
-    hands = [0.0] * len(windows)
+    inverse, covariance = _reweighted(windows, alike, [0.0] * len(windows))
+    if max(abs(float((each @ inverse).mean()) - 1) for each in windows) < LOADED:
+        return inverse, covariance
+    # The robot carries a load in some of them, which is no gain: those that most agree with tell.
+    sums = np.array([each.sum(axis=1).mean() for each in windows])
+    return _reweighted(windows, alike, np.abs(sums / np.median(sums) - 1).tolist())
+
+
+def _reweighted(windows: Sequence[Array], alike: Array, hands: Sequence[float]) -> tuple[Array, Array]:
+    """The same where each recording's sums may at first be off by what `hands` carry, and later by what they miss."""
+    loaded = any(hands)
     for _ in range(REWEIGHTED):
         precision, right = alike.copy(), np.zeros(len(alike))
         for each, hand in zip(windows, hands, strict=True):
@@ -129,7 +142,8 @@ def _inverse_gains(windows: Sequence[Array], alike: Array) -> tuple[Array, Array
             right += middle / variance
         inverse = np.linalg.solve(precision, right)
         # A hand on the robot carries now more, now less.
-        hands = [HAND * float((each @ inverse).std()) for each in windows]
+        sums = [each @ inverse for each in windows]
+        hands = [float(np.hypot(HAND * one.std(), loaded * (one.mean() - 1))) for one in sums]
     return np.asarray(inverse), np.asarray(np.linalg.inv(precision))
 
 
@@ -178,7 +192,11 @@ def _windows(recording: Recording, weight: float) -> Array:
     if len(forces) < 2 * half:
         return np.empty((0, forces.shape[1]))
     whole = sliding_window_view(forces, 2 * half, axis=0)[::half] @ (np.hanning(2 * half + 1)[1:] / half)
-    return np.asarray(whole[whole.sum(axis=1) > CARRIED])
+    carried = whole[whole.sum(axis=1) > CARRIED]
+    apart = np.abs(carried.sum(axis=1) - np.median(carried.sum(axis=1))) if len(carried) else np.zeros(0)
+    alone = carried[apart < HOISTED_SHARE]
+    # A rope or a hand takes over a part of the weight for a while: where all else is alike, that is no gain.
+    return np.asarray(alone if len(alone) and float(alone.sum(axis=1).std()) < STEADY else carried)
 
 
 def _mass_deviation(robot: RobotModel) -> float:

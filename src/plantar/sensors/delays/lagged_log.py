@@ -13,7 +13,7 @@ from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.refined_delays import read_in_time
-from plantar.sensors.newton_euler import with_gyroscope
+from plantar.sensors.newton_euler import held_for_a_while, with_gyroscope
 from plantar.sensors.newton_sides import SLOW, STOOD
 from plantar.signals.filters import low_pass
 from plantar.signals.resampling import shifted, with_continuous_quaternions
@@ -41,6 +41,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     reach = int(np.ceil(SEARCHED / thin.period)) + 1
     signals = inertial_signals(robot, thin, CUTOFF)
     known = np.isfinite(np.hstack([*readings, signals.rate, signals.proper])).all(axis=1)
+    known &= ~held_for_a_while(robot, thin)
     joints = np.pad(np.isfinite(signals.positions).all(axis=1), reach)  # nothing is known beyond the ends
     longest = longest_run(known & sliding_window_view(joints, 2 * reach + 1).all(axis=1))
     inner = slice(longest.start + reach, longest.stop - reach)

@@ -31,7 +31,7 @@ from plantar.sensors.delays.refined_delays import (
     read_in_time,
     refined_delays,
 )
-from plantar.sensors.newton_euler import NewtonEulerResidual
+from plantar.sensors.newton_euler import NewtonEulerResidual, held_for_a_while
 
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
@@ -115,8 +115,8 @@ def estimate_wrench_delay(
         if again is not None and (found is None or _surer(again, found)):
             found = again
     searched = np.array([grid is not None for grid in grids])
-    accelerated = np.array([_accelerated(robot, log) for log in logs])
-    if _in_doubt(lags, found, searched, accelerated):
+    alone = np.array([_accelerated(robot, log) and not held_for_a_while(robot, log).any() for log in logs])
+    if _in_doubt(lags, found, searched, alone):
         return _doubtful(robot, lags)
     return _unseen(robot, logs) if found is None else _told(robot, found)
 
@@ -140,16 +140,17 @@ def _accelerated(robot: RobotModel, log: MotionLog) -> bool:
     return robot.imu is not None and log.has_imu(robot.imu.name, "linear_acceleration")
 
 
-def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask, accelerated: Mask) -> bool:
+def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask, alone: Mask) -> bool:
     """Whether Newton's law, in logs that move, closes at no lag, or at lags that are not those found.
 
     Where somebody pushes it cannot close, and torques are far larger or smaller than predicted: that says nothing of
     the sensors' moments. Nor do logs that do not close beside others that show the delay well: a hand that steadies a
-    robot takes less than a push. Nor does a log without an accelerometer: what its soles say may be wrong as well.
+    robot takes less than a push. Nor does a log without an accelerometer, what its soles say may be wrong as well, or
+    one in which the robot was held for a while: only others tell of it `alone`.
     """
     missed = lags.missed > 1 - LEAST_CLOSED
     pushed = np.maximum(lags.power, 1 / np.maximum(lags.power, 1e-9)) > PUSHED
-    unclosed = missed & ~pushed & accelerated[searched]
+    unclosed = missed & ~pushed & alone[searched]
     if unclosed.any():
         closed = found is not None and found.closed[searched][unclosed].all()
         return not closed and (found is None or found.std > WELL_KNOWN)
