@@ -48,13 +48,13 @@ def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
     return Pair("sweep", measured[100:-100], rate[100:-100], predicted[100:-100], PERIOD)
 
 
-def closed(pair: Pair) -> NewtonEulerResidual:
-    """The pair as one foot's closure, under still joints."""
+def closed(pair: Pair, feet: int = 1) -> NewtonEulerResidual:
+    """The pair as the closure of feet that carry the same, under still joints."""
     flat = 0 * pair.predicted
     still = InertialSignals(flat[:, :0], flat[:, :3], flat[:, :3], PERIOD)
-    measured, rate = pair.measured[None], pair.rate[None]
-    rows = slice(len(flat))
-    return NewtonEulerResidual(pair, measured, rate, flat, flat, still, rows, np.zeros(0), flat, True)
+    measured, rate = (np.repeat(own[None] / feet, feet, axis=0) for own in (pair.measured, pair.rate))
+    rows, readings = slice(len(flat)), np.hstack(feet * [flat])
+    return NewtonEulerResidual(pair, measured, rate, flat, readings, still, rows, np.zeros(0), readings, True)
 
 
 @pytest.mark.parametrize("slow_first", [True, False])
@@ -62,7 +62,7 @@ def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path
     """Whichever log comes first; one that says nothing of the delay does not count."""
     periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
     logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
-    residuals = [[closed(late_pair(0.0, 1))], [closed(late_pair(0.0, 2))], []]
+    residuals = [[closed(late_pair(0.0, seed), feet=2).with_bands()] for seed in (1, 2)] + [[]]
     found = estimate_wrench_delay(make_robot(tmp_path), logs, as_recorded=residuals)
     assert CLOCK * 0.02 <= found.std < CLOCK * 0.1
 
