@@ -184,6 +184,14 @@ def test_a_rope_that_carries_a_part_for_a_while_is_told(share: float, held: bool
     assert not hoisted(load * np.nan, WEIGHT, 0.005).any()
 
 
+def test_a_step_at_a_logs_end_is_no_rope() -> None:
+    """There a mean is one of half as long a time, and half of that again."""
+    time = np.arange(6000) * 0.005
+    load = WEIGHT * (1 - 0.3 * (time < 0.8))
+    assert not hoisted(load, WEIGHT, 0.005).any()
+    assert hoisted(WEIGHT * (1 - 0.3 * (time < 5)), WEIGHT, 0.005).any()
+
+
 def test_stretches_are_widened_and_joined() -> None:
     mask = np.zeros(20, dtype=bool)
     mask[[5, 9]] = True

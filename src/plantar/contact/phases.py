@@ -157,7 +157,11 @@ def hoisted(load: Array, weight: float, period: float) -> Mask:
     slow = _means_around(_means_around(load, reach), reach)
     known = slow[np.isfinite(slow)]
     apart = np.abs(slow - (np.median(known) if known.size else 0.0)) > HOISTED_SHARE * weight
-    return widened(np.asarray(apart), round(HOISTED_AROUND / period))
+    held = widened(np.asarray(apart), round(HOISTED_AROUND / period))
+    # At a log's ends a mean is one of few samples: a single step.
+    for run in runs(held):
+        held[run] = (run.stop - run.start) * period >= HOISTING + 2 * HOISTED_AROUND
+    return held
 
 
 def hoisted_note(log: str, time: Array, held: Mask, then: str) -> Note:
@@ -166,7 +170,7 @@ def hoisted_note(log: str, time: Array, held: Mask, then: str) -> Note:
     text = (
         f"{log}: for {lasts:.3g} s, first at t = {clock(time[int(held.argmax())])} s, the feet carry over "
         f"{100 * HOISTED_SHARE:.0f} % of the weight less or more than as a rule, as where a rope or a hand holds the "
-        f"robot for a while: {then}"
+        f"robot for a while or force sensors have unlike gains: {then}"
     )
     return Note("held_for_a_while", "info", text)
 
