@@ -151,8 +151,8 @@ def shaken(force: Array, weight: float, period: float) -> Mask:
 
 
 def hoisted(load: Array, weight: float, period: float) -> Mask:
-    """Samples in which a rope or a hand carries a part of the robot, or lets go of it: its feet carry together another
-    `load` (N,) [N] than as a rule, by a share of its `weight` [N]."""
+    """Samples in which a rope or a hand carries a part of the robot for seconds, or lets go of it: its feet carry
+    together another `load` (N,) [N] than as a rule, by a share of its `weight` [N]."""
     reach = max(1, round(HOISTING / 2 / period))
     slow = _means_around(_means_around(load, reach), reach)
     known = slow[np.isfinite(slow)]

@@ -212,10 +212,10 @@ def _by_choice(balances: Sequence[Balance], contrasts: Array, common: float, std
 
 def _follows(residuals: Sequence[NewtonEulerResidual], found: RefinedDelays) -> float:
     """By how much the feet's delay moves with the encoders', as it is found here, near the delays `found`."""
-    count = len(found.values)
+    count, held = len(found.values), None
     contrasts = _contrasts(count - 1)
-    feet = np.full(count - 1, found.feet_differ)
-    held = contrasts[~np.append(feet, False)] if found.feet_differ or found.encoders_differ else None
+    if found.feet_differ or found.encoders_differ:
+        held = contrasts[-1:] if found.feet_differ else contrasts
     later = [one.read_later(SETTLED * contrasts[-1]) for one in residuals]
     sides = [_left(own, held, count) for own in (residuals, later)]
     if sides[0] is None or sides[1] is None:
