@@ -2,6 +2,7 @@
 
     python benchmarks/outside_worlds.py --exact --robots hrp2 g1 --worlds 1        sensors and robot file exact
     python benchmarks/outside_worlds.py --worlds 6 --first 100 --keep DIR          --keep: logs are made once
+    python benchmarks/outside_worlds.py --walks --robots hrp2 talos g1             walks instead of standing
 
 Each seed is another robot with rubber, sensors and a robot file of its own; every second one has rubber that slides
 inside. A number is wrong if it is called usable and the truth lies outside of one and a half half widths by more than a
@@ -28,7 +29,9 @@ from outside.physics import Motion, play
 from outside.robots import NAMES, real_robot, rubber_of, write_told
 from outside.rubber import Rubber
 from outside.stance import Stance
+from outside.walks import WALKS, walked
 from plantar.conventions import NORMAL95
+from plantar.errors import MotionError
 from plantar.robot.model import RobotModel
 
 DURATION = 30.0  # s
@@ -47,23 +50,24 @@ def main() -> None:
     parser.add_argument(
         "--exact", action="store_true", help="sensors and robot file without errors, no sliding"
     )
+    parser.add_argument("--walks", action="store_true", help="walks instead of motions on standing feet")
     parser.add_argument("--keep", type=Path, help="folder in which logs stay, and are found again")
     chosen = parser.parse_args()
     kept = chosen.keep or Path(tempfile.mkdtemp(prefix="plantar-"))
-    rows = list[Row]()
+    rows, kind = list[Row](), ("_exact" if chosen.exact else "") + ("_walks" if chosen.walks else "")
     for name in chosen.robots:
         for seed in range(chosen.first, chosen.first + chosen.worlds):
-            folder = kept / f"{name}_{seed}{'_exact' if chosen.exact else ''}"
+            folder = kept / f"{name}_{seed}{kind}"
             if not (folder / "truth.json").exists():
-                make(name, seed, chosen.exact, folder)
-            found = score(folder, name, seed)
+                make(name, seed, chosen.exact, chosen.walks, folder)
+            found = score(folder, name, seed, WALKS if chosen.walks else MOTIONS)
             rows += found
             for row in found:
                 print(_line(row), flush=True)
     print(_summary(rows))
 
 
-def make(name: str, seed: int, exact: bool, folder: Path) -> None:
+def make(name: str, seed: int, exact: bool, walks: bool, folder: Path) -> None:
     """Logs, robot file and truth of one world."""
     folder.mkdir(parents=True, exist_ok=True)
     robot = real_robot(name, folder)
@@ -71,8 +75,8 @@ def make(name: str, seed: int, exact: bool, folder: Path) -> None:
     lab = sensors.EXACT if exact else sensors.Lab()
     drawn = sensors.draw_sensors(robot, lab, seed, 200.0 if exact else None)
     stance = Stance(robot)
-    for motion in MOTIONS:
-        played = _flat(stance, motion, seed, rubber)
+    for motion in WALKS if walks else MOTIONS:
+        played = _walk(robot, motion, rubber) if walks else _flat(stance, motion, seed, rubber)
         if played is not None:
             columns = sensors.record(robot, played, lab, drawn, seed, motion)
             sensors.write(columns, str(folder / f"{motion}.csv"))
@@ -94,6 +98,14 @@ def _flat(stance: Stance, motion: str, seed: int, rubber: dict[str, Rubber]) -> 
     return None
 
 
+def _walk(robot: RobotModel, name: str, rubber: dict[str, Rubber]) -> Motion | None:
+    try:
+        return walked(robot, name, rubber)
+    except MotionError as error:
+        print(error, file=sys.stderr)
+        return None
+
+
 def _truth(robot: RobotModel, rubber: dict[str, Rubber]) -> list[list[Any]]:
     rows = list[list[Any]]()
     for foot in robot.feet:
@@ -109,10 +121,12 @@ def _truth(robot: RobotModel, rubber: dict[str, Rubber]) -> list[list[Any]]:
     return rows
 
 
-def score(folder: Path, name: str, seed: int) -> list[Row]:
-    """Every number of one world beside its truth."""
+def score(folder: Path, name: str, seed: int, motions: Sequence[str]) -> list[Row]:
+    """Every number of one world beside its truth; none where fewer than two motions could be played."""
     facts = json.loads((folder / "truth.json").read_text())
-    logs = [folder / f"{motion}.csv" for motion in MOTIONS if (folder / f"{motion}.csv").exists()]
+    logs = [folder / f"{motion}.csv" for motion in motions if (folder / f"{motion}.csv").exists()]
+    if len(logs) < 2:
+        return []
     command = [Path(sys.executable).parent / "plantar", "identify", "feet", folder / "robot.yaml", *logs[:-1]]
     command += ["--validate", logs[-1], "--out", folder / "out", "--quiet"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

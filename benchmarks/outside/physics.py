@@ -6,7 +6,7 @@ MuJoCo reads the URDF and solves everything; what slides is stepped here. Nothin
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -19,9 +19,8 @@ from plantar.robot.model import Foot, Placement, RobotModel
 
 STEP = 1e-3  # s
 SETTLE = 3.0  # s, in which the servos hold the first row
-SOLE_MASS = (
-    0.05  # of the robot's; below the force sensors and still, it weighs on nothing and lets steps be long
-)
+# Of the robot's; below the force sensors and still, it weighs on nothing and lets steps be long. What is lifted is light.
+SOLE_MASS, LIFTED_MASS = 0.05, 0.005
 SOLE_INERTIA = 1e-3  # m², over the robot's mass
 SERVO = 20.0  # times weight times height [N·m/rad]
 SERVO_DAMPING = 0.02  # s, over the stiffness
@@ -49,9 +48,16 @@ class Motion:
     tilt: float
 
 
-def play(robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, Rubber]) -> Motion:
+# Makes, for a model, what leads each row's targets away by the robot's state before the step.
+Leads = Callable[[mujoco.MjModel], Callable[[int, mujoco.MjData], Array]]
+
+
+def play(
+    robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, Rubber], leads: Leads | None = None
+) -> Motion:
     """Play `targets` (n, joints) at 1000 Hz from the root's pose `start` (7,) x y z, w x y z."""
-    model = _model(robot, rubber)
+    model = _model(robot, rubber, SOLE_MASS if leads is None else LIFTED_MASS)
+    lead = None if leads is None else leads(model)
     data = mujoco.MjData(model)
     names = list(robot.joint_names)
     places = np.array([model.joint(name).qposadr[0] for name in names])
@@ -63,6 +69,8 @@ def play(robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, R
     axes, centres = np.empty((len(targets), len(bodies), 9)), np.empty((len(targets), len(bodies), 3))
     for row in range(-round(SETTLE / STEP), len(targets)):
         data.ctrl[:] = targets[max(row, 0)]
+        if lead is not None:
+            data.ctrl[:] += lead(max(row, 0), data)
         for each in sliding:
             each.push(data)
         if row >= 0:
@@ -105,7 +113,7 @@ def _sliding_hinges(rubber: Mapping[str, Rubber]) -> list[tuple[str, str, Hinge]
     return [each for each in found if each[2].slip_torque > 0]
 
 
-def _model(robot: RobotModel, rubber: Mapping[str, Rubber]) -> mujoco.MjModel:
+def _model(robot: RobotModel, rubber: Mapping[str, Rubber], sole_mass: float) -> mujoco.MjModel:
     servo = SERVO * weight_times_height(robot)
     spec = mujoco.MjSpec.from_string(_bare(robot.urdf))
     spec.compiler.fusestatic, spec.compiler.balanceinertia = False, True
@@ -124,7 +132,7 @@ def _model(robot: RobotModel, rubber: Mapping[str, Rubber]) -> mujoco.MjModel:
     spec.body(mount.link).add_site(name="imu", pos=mount.xyz, quat=_quaternion(mount))
     _add_sensors(spec, "imu", ("FRAMEQUAT", "GYRO", "ACCELEROMETER"))
     for name in rubber:
-        _add_sole(spec, robot.feet[name], rubber[name], robot.mass)
+        _add_sole(spec, robot.feet[name], rubber[name], robot.mass, sole_mass)
     floor = spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE, size=[5, 5, 0.1], friction=[1.0, 0.005, 0.0001]
     )
@@ -153,10 +161,10 @@ def _bare(urdf: str) -> str:
     return ET.tostring(root, encoding="unicode")
 
 
-def _add_sole(spec: mujoco.MjSpec, foot: Foot, rubber: Rubber, mass: float) -> None:
+def _add_sole(spec: mujoco.MjSpec, foot: Foot, rubber: Rubber, mass: float, share: float) -> None:
     holder = spec.body(foot.bush.link)
     sole = holder.add_body(name=f"{foot.name}.sole", pos=foot.bush.xyz, quat=_quaternion(foot.bush))
-    sole.mass, sole.inertia, sole.explicitinertial = SOLE_MASS * mass, 3 * [SOLE_INERTIA * mass], True
+    sole.mass, sole.inertia, sole.explicitinertial = share * mass, 3 * [SOLE_INERTIA * mass], True
     slide = sole.add_joint(name=f"{foot.name}.z", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
     slide.stiffness[0], slide.damping[0] = rubber.stiffness, rubber.damping
     for axis, direction in AXES:
@@ -179,7 +187,7 @@ def _add_sole(spec: mujoco.MjSpec, foot: Foot, rubber: Rubber, mass: float) -> N
 def _add_sensors(spec: mujoco.MjSpec, site: str, kinds: tuple[str, ...]) -> None:
     for kind in kinds:
         spec.add_sensor(
-            name=f"{site}.{kind}", type=getattr(mujoco.mjtSensor, f"mjSENS_{kind}"),
+            name=f"{site}.{kind.lower()}", type=getattr(mujoco.mjtSensor, f"mjSENS_{kind}"),
             objtype=mujoco.mjtObj.mjOBJ_SITE, objname=site,
         )  # fmt: skip
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -11,7 +13,7 @@ import pytest
 from plantar.contact.balance import planned_wrench, sole_outlines, zero_moment_point
 from plantar.contact.polygon import convex_hull, inside_distance
 from plantar.errors import MotionError
-from plantar.motions import Plan, plan_motion
+from plantar.motions import Plan, plan_motion, walk
 from plantar.motions.body import Body
 from plantar.motions.feasible import check, configurations
 from plantar.motions.footsteps import CLEARANCE, footsteps
@@ -115,6 +117,22 @@ def test_names_say_the_gait() -> None:
     assert gait_of("WalkTurn").turn > 0
     assert not is_walk("Walk")
     assert not is_walk("Walk0")
+
+
+def test_legs_that_jump_from_one_posture_to_another_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By 5 cm within a fiftieth of a second: no weight holds the robot on the floor."""
+    follow = walk._follow
+
+    def jumping(*given: Any) -> np.ndarray:
+        found = follow(*given)
+        found[60, 2] += 0.05
+        return found
+
+    monkeypatch.setattr(walk, "_follow", jumping)
+    body = Body(hrp2.robot())
+    with pytest.raises(MotionError, match=r"t = 1\.\d+ s: Walk: the robot would leave the floor") as caught:
+        walk_plan(body, "Walk", stand(body, hrp2.postures().standing, {}), replace(BUILT, steps=1))
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from plantar.contact.balance import planned_wrench, zero_moment_point
 from plantar.conventions import Array
+from plantar.errors import MotionError
 from plantar.motions.body import CHEST, Body
 from plantar.motions.feasible import LEAST, configurations
 from plantar.motions.footsteps import Footsteps, footsteps
@@ -30,7 +31,7 @@ def walk_plan(body: Body, name: str, start: Stance, gait: Gait) -> Plan:
     """A walk of `gait` from two soles that stand level.
 
     The centre of mass keeps its height, the root link is level, and it and the chest face the way. Raises MotionError
-    when a foot cannot reach its place.
+    when a foot cannot reach its place or the robot would leave the floor.
     """
     middles = {foot: _middle(body, foot) for foot in start.soles}
     steps = footsteps(gait, start.soles, middles)
@@ -42,6 +43,12 @@ def walk_plan(body: Body, name: str, start: Stance, gait: Gait) -> Plan:
     for _ in range(CORRECTIONS):
         # Kajita's second stage: the whole body's ZMP misses the planned one, the pendulum makes it up
         missed = zmp - _zmp(body, splined(body, name, start, knots, found), knots)
+        if not np.isfinite(missed).all():
+            time = float(knots[~np.isfinite(missed).all(axis=1)][0])
+            message = (
+                f"{name}: the robot would leave the floor, since its legs jump from one posture to another"
+            )
+            raise MotionError(message, path=body.robot.name, time=time, valid="a smaller or slower walk")
         centre[:, :2] += centre_over(missed, height, 1 / KNOTS)
         found = _follow(body, name, start, steps, knots, centre, found)
     plan = splined(body, name, start, knots, found)
