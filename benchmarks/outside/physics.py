@@ -19,7 +19,7 @@ from plantar.robot.model import Foot, Placement, RobotModel
 
 STEP = 1e-3  # s
 SETTLE = 3.0  # s, in which the servos hold the first row
-# Of the robot's; below the force sensors and still, it weighs on nothing and lets steps be long. What is lifted is light.
+# Of the robot's; below the force sensors and still, it weighs on nothing and lets steps be long. A lifted one is light.
 SOLE_MASS, LIFTED_MASS = 0.05, 0.005
 SOLE_INERTIA = 1e-3  # m², over the robot's mass
 SERVO = 20.0  # times weight times height [N·m/rad]
