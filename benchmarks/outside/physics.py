@@ -20,12 +20,14 @@ from plantar.robot.model import Foot, Placement, RobotModel
 STEP = 1e-3  # s
 SETTLE = 3.0  # s, in which the servos hold the first row
 # Of the robot's; below the force sensors and still, it weighs on nothing and lets steps be long. A lifted one is light.
-SOLE_MASS, LIFTED_MASS = 0.05, 0.005
+SOLE_MASS, LIFTED_MASS = 0.05, 0.02
 SOLE_INERTIA = 1e-3  # m², over the robot's mass
 SERVO = 20.0  # times weight times height [N·m/rad]
 SERVO_DAMPING = 0.02  # s, over the stiffness
 ROTOR = 1e-4  # s², inertia over the stiffness
-FLOOR = ([-2.5e5, -1e3], [0.999, 0.999])  # stiff beside any rubber: solref and solimp
+# Stiff beside any rubber: solref and solimp. Under soles that are lifted stiffer, in smaller steps: light ones sink more.
+FLOOR, HARD_FLOOR, PARTS = (-2.5e5, -1e3), (-5e5, -1.4e3), 2
+HARD = 0.999
 SMALLEST = 1e-6  # kg·m²
 ENTRIES = {(0, 0): "ixx", (1, 1): "iyy", (2, 2): "izz", (0, 1): "ixy", (0, 2): "ixz", (1, 2): "iyz"}
 AXES = (("pitch", [0, 1, 0]), ("roll", [1, 0, 0]))
@@ -56,7 +58,7 @@ def play(
     robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, Rubber], leads: Leads | None = None
 ) -> Motion:
     """Play `targets` (n, joints) at 1000 Hz from the root's pose `start` (7,) x y z, w x y z."""
-    model = _model(robot, rubber, SOLE_MASS if leads is None else LIFTED_MASS)
+    model, parts = _model(robot, rubber, lifted=leads is not None), 1 if leads is None else PARTS
     lead = None if leads is None else leads(model)
     data = mujoco.MjData(model)
     names = list(robot.joint_names)
@@ -71,13 +73,14 @@ def play(
         data.ctrl[:] = targets[max(row, 0)]
         if lead is not None:
             data.ctrl[:] += lead(max(row, 0), data)
-        for each in sliding:
-            each.push(data)
         if row >= 0:
             joints[row] = data.qpos[places]
-        mujoco.mj_step(model, data)  # sensors and frames are those of the state before the step
-        if row >= 0:
-            read[row], axes[row], centres[row] = data.sensordata, data.xmat[bodies], data.xpos[bodies]
+        for part in range(parts):
+            for each in sliding:
+                each.push(data)
+            mujoco.mj_step(model, data)  # sensors and frames are those of the state before the step
+            if row >= 0 and part == 0:
+                read[row], axes[row], centres[row] = data.sensordata, data.xmat[bodies], data.xpos[bodies]
     turns = axes.reshape(len(targets), len(rubber), 2, 3, 3)
     wrenches, tilt = {}, 0.0
     for number, name in enumerate(rubber):
@@ -113,11 +116,11 @@ def _sliding_hinges(rubber: Mapping[str, Rubber]) -> list[tuple[str, str, Hinge]
     return [each for each in found if each[2].slip_torque > 0]
 
 
-def _model(robot: RobotModel, rubber: Mapping[str, Rubber], sole_mass: float) -> mujoco.MjModel:
+def _model(robot: RobotModel, rubber: Mapping[str, Rubber], *, lifted: bool) -> mujoco.MjModel:
     servo = SERVO * weight_times_height(robot)
     spec = mujoco.MjSpec.from_string(_bare(robot.urdf))
     spec.compiler.fusestatic, spec.compiler.balanceinertia = False, True
-    spec.option.timestep = STEP
+    spec.option.timestep = STEP / PARTS if lifted else STEP
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.worldbody.first_body().add_freejoint()
     for joint in spec.joints:
@@ -132,11 +135,11 @@ def _model(robot: RobotModel, rubber: Mapping[str, Rubber], sole_mass: float) ->
     spec.body(mount.link).add_site(name="imu", pos=mount.xyz, quat=_quaternion(mount))
     _add_sensors(spec, "imu", ("FRAMEQUAT", "GYRO", "ACCELEROMETER"))
     for name in rubber:
-        _add_sole(spec, robot.feet[name], rubber[name], robot.mass, sole_mass)
+        _add_sole(spec, robot.feet[name], rubber[name], robot.mass, LIFTED_MASS if lifted else SOLE_MASS)
     floor = spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE, size=[5, 5, 0.1], friction=[1.0, 0.005, 0.0001]
     )
-    floor.solref, floor.solimp[:2], floor.priority = FLOOR[0], FLOOR[1], 1
+    floor.solref, floor.solimp[:2], floor.priority = HARD_FLOOR if lifted else FLOOR, HARD, 1
     return spec.compile()
 
 
