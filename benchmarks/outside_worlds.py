@@ -25,8 +25,8 @@ import numpy as np
 
 from outside import robots, sensors
 from outside.motions import MOTIONS, plan
-from outside.physics import Motion, play
-from outside.robots import NAMES, real_robot, rubber_of, write_told
+from outside.physics import LIFTED_SOLE, Motion, play
+from outside.robots import NAMES, real_robot, rubber_of, with_soles, write_told
 from outside.rubber import Rubber
 from outside.stance import Stance
 from outside.walks import WALKS, walked
@@ -80,7 +80,8 @@ def make(name: str, seed: int, exact: bool, walks: bool, folder: Path) -> None:
         if played is not None:
             columns = sensors.record(robot, played, lab, drawn, seed, motion)
             sensors.write(columns, str(folder / f"{motion}.csv"))
-    write_told(robot, robots.EXACT if exact else robots.Spread(), seed, folder)
+    told = with_soles(robot, *LIFTED_SOLE) if walks else robot
+    write_told(told, robots.EXACT if exact else robots.Spread(), seed, folder)
     truth = _truth(robot, rubber) + [["", "", "delay", float(np.mean(list(drawn.late.values())))]]
     facts = {"numbers": truth, "rate": drawn.rate, "late": dict(drawn.late)}
     (folder / "truth.json").write_text(json.dumps(facts))

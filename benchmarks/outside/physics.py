@@ -19,13 +19,13 @@ from plantar.robot.model import Foot, Placement, RobotModel
 
 STEP = 1e-3  # s
 SETTLE = 3.0  # s, in which the servos hold the first row
-# Of the robot's; below the force sensors and still, it weighs on nothing and lets steps be long. A lifted one is light.
-SOLE_MASS, LIFTED_MASS = 0.05, 0.02
-SOLE_INERTIA = 1e-3  # m², over the robot's mass
+# Share of the robot's mass, and m² over it: below the force sensors and still, a sole weighs on nothing and lets steps
+# be long. One that is lifted is lighter.
+SOLE, LIFTED_SOLE = (0.05, 1e-3), (0.02, 4e-4)
 SERVO = 20.0  # times weight times height [N·m/rad]
 SERVO_DAMPING = 0.02  # s, over the stiffness
 ROTOR = 1e-4  # s², inertia over the stiffness
-# Stiff beside any rubber: solref and solimp. Under soles that are lifted stiffer, in smaller steps: light ones sink more.
+# Stiff beside any rubber: solref and solimp. Light soles sink more: stiffer under these, in smaller steps.
 FLOOR, HARD_FLOOR, PARTS = (-2.5e5, -1e3), (-5e5, -1.4e3), 2
 HARD = 0.999
 SMALLEST = 1e-6  # kg·m²
@@ -135,7 +135,7 @@ def _model(robot: RobotModel, rubber: Mapping[str, Rubber], *, lifted: bool) -> 
     spec.body(mount.link).add_site(name="imu", pos=mount.xyz, quat=_quaternion(mount))
     _add_sensors(spec, "imu", ("FRAMEQUAT", "GYRO", "ACCELEROMETER"))
     for name in rubber:
-        _add_sole(spec, robot.feet[name], rubber[name], robot.mass, LIFTED_MASS if lifted else SOLE_MASS)
+        _add_sole(spec, robot.feet[name], rubber[name], robot.mass, LIFTED_SOLE if lifted else SOLE)
     floor = spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE, size=[5, 5, 0.1], friction=[1.0, 0.005, 0.0001]
     )
@@ -164,10 +164,12 @@ def _bare(urdf: str) -> str:
     return ET.tostring(root, encoding="unicode")
 
 
-def _add_sole(spec: mujoco.MjSpec, foot: Foot, rubber: Rubber, mass: float, share: float) -> None:
+def _add_sole(
+    spec: mujoco.MjSpec, foot: Foot, rubber: Rubber, mass: float, of_mass: tuple[float, float]
+) -> None:
     holder = spec.body(foot.bush.link)
     sole = holder.add_body(name=f"{foot.name}.sole", pos=foot.bush.xyz, quat=_quaternion(foot.bush))
-    sole.mass, sole.inertia, sole.explicitinertial = share * mass, 3 * [SOLE_INERTIA * mass], True
+    sole.mass, sole.inertia, sole.explicitinertial = of_mass[0] * mass, 3 * [of_mass[1] * mass], True
     slide = sole.add_joint(name=f"{foot.name}.z", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
     slide.stiffness[0], slide.damping[0] = rubber.stiffness, rubber.damping
     for axis, direction in AXES:

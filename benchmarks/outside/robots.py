@@ -12,6 +12,7 @@ import pinocchio as pin
 import yaml
 
 from biped_twins import known_robot, urdf_of
+from outside.physics import ENTRIES
 from outside.rubber import Rubber, draw_rubber
 from plantar.conventions import Array
 from plantar.robot.model import Foot, Placement, RobotModel
@@ -54,6 +55,41 @@ def real_robot(name: str, folder: Path) -> RobotModel:
 
 def rubber_of(robot: RobotModel, seed: int, sliding: bool) -> dict[str, Rubber]:
     return draw_rubber(robot, np.random.default_rng([seed, zlib.crc32(robot.name.encode()), 1]), sliding)
+
+
+def with_soles(robot: RobotModel, mass: float, inertia: float) -> RobotModel:
+    """The robot whose URDF counts to its ankles' links, as URDFs do, the soles that its physics hang below."""
+    root = ET.fromstring(robot.urdf)
+    for foot in robot.feet.values():
+        link = next(each for each in root.iter("link") if each.get("name") == foot.ankle)
+        given = _inertia_of(link)
+        whole = given + pin.Inertia(mass * robot.mass, foot.bush.xyz, inertia * robot.mass * np.eye(3))
+        for inertial in link.findall("inertial"):
+            link.remove(inertial)
+        inertial = ET.SubElement(link, "inertial")
+        ET.SubElement(inertial, "origin", xyz=" ".join(repr(float(v)) for v in whole.lever))
+        ET.SubElement(inertial, "mass", value=repr(float(whole.mass)))
+        places = {name: repr(float(whole.inertia[place])) for place, name in ENTRIES.items()}
+        ET.SubElement(inertial, "inertia", places)
+    return replace(robot, urdf=ET.tostring(root, encoding="unicode"))
+
+
+def _inertia_of(link: ET.Element) -> pin.Inertia:
+    """Of a URDF's link, in its axes."""
+    inertial = link.find("inertial")
+    if inertial is None:
+        return pin.Inertia.Zero()
+    origin, mass, inertia = (inertial.find(tag) for tag in ("origin", "mass", "inertia"))
+    assert mass is not None
+    assert inertia is not None
+    xyz, rpy = (
+        np.zeros(3) if origin is None else np.array([float(v) for v in origin.get(key, "0 0 0").split()])
+        for key in ("xyz", "rpy")
+    )
+    own, turn = np.zeros((3, 3)), pin.rpy.rpyToMatrix(*rpy)
+    for (row, column), name in ENTRIES.items():
+        own[row, column] = own[column, row] = float(inertia.get(name, 0))
+    return pin.Inertia(float(mass.get("value", 0)), xyz, turn @ own @ turn.T)
 
 
 def write_told(robot: RobotModel, spread: Spread, seed: int, folder: Path) -> Path:
