@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.signal import butter, lfilter, lfilter_zi
+from scipy.signal import butter, lfilter, lfilter_zi, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from outside.physics import Motion
@@ -15,6 +15,7 @@ from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 
 SECOND_ORDER = np.sqrt(2) / (2 * np.pi)  # delay of a Butterworth filter of second order, times its cutoff
+SAMPLED = 0.4  # of a log's rate: quicker than that a sensor passes nothing on
 RATES = (100.0, 200.0, 250.0, 500.0, 1000.0)  # Hz
 
 
@@ -92,7 +93,7 @@ def record(
     assert robot.imu is not None
     random = np.random.default_rng([seed, zlib.crc32(robot.name.encode()), zlib.crc32(name.encode())])
     time = np.arange(0.05, motion.time[-1], 1 / drawn.rate)
-    noise = random.standard_normal
+    noise, motion = random.standard_normal, _sampled(motion, drawn.rate)
     joints = _late(motion, motion.joints, 0.0, time) + drawn.zeros
     if lab.encoder_step:
         joints = lab.encoder_step * np.round(joints / lab.encoder_step)
@@ -131,6 +132,22 @@ def write(columns: Mapping[str, Array], path: str) -> None:
     """As CSV, with the digits that such files have."""
     table = np.column_stack(list(columns.values()))
     np.savetxt(path, table, fmt="%.7g", delimiter=",", header=",".join(columns), comments="")
+
+
+def _sampled(motion: Motion, rate: float) -> Motion:
+    """Without what a log of this rate cannot hold: feet strike the floor faster than that."""
+    if SAMPLED * rate >= 0.5 / (motion.time[1] - motion.time[0]):
+        return motion
+    filtered = butter(4, SAMPLED * rate, fs=1000.0, output="sos")
+
+    def slowed(values: Array) -> Array:
+        return np.asarray(sosfiltfilt(filtered, values, axis=0))
+
+    wrenches = {foot: slowed(wrench) for foot, wrench in motion.wrenches.items()}
+    return replace(
+        motion, joints=slowed(motion.joints), turning=slowed(motion.turning), pull=slowed(motion.pull),
+        wrenches=wrenches,
+    )  # fmt: skip
 
 
 def _late(motion: Motion, values: Array, delay: float, time: Array) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -11,9 +13,11 @@ from plantar.dynamics import Equation
 from plantar.dynamics.motion import Motion, pinocchio_motion
 from plantar.feet.prepare_log import checked
 from plantar.robot.model import RobotModel
-from plantar.sensors.below_sensor import below_sensors
+from plantar.sensors.below_sensor import below_sensors, counts_below
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.twin.robots import hrp2
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.urdf import urdf_text
 from twin_samples import walked
 
 PERIOD, COUNT = 0.025, 800
@@ -116,3 +120,33 @@ def test_newtons_law_closes_in_a_walk(robot: RobotModel) -> None:
     pair = residual.pair
     missing = np.std(pair.predicted - pair.measured, axis=0) / np.std(pair.measured, axis=0)
     assert missing.max() < 0.13
+
+
+def test_soles_that_no_urdf_counts_are_not_taken_off_it(robot: RobotModel) -> None:
+    """Of a URDF without the twin's soles Newton's law closes as well as of the one that counts them to its last links,
+    and what moves above the sensors is the same."""
+    description = hrp2.description()
+    bodies = list(description.bodies)
+    for cut in cut_feet(description, robot).values():
+        bodies[cut.place] = cut.ankle
+    bare = replace(robot, urdf=urdf_text(replace(description, bodies=tuple(bodies))))
+    assert robot.mass - bare.mass > 1.0
+    whole, without = (newton_euler_residuals(each, checked(each, walked()))[0] for each in (robot, bare))
+    missing = np.std(without.pair.predicted - without.pair.measured, axis=0)
+    assert (missing / np.std(without.pair.measured, axis=0)).max() < 0.13
+    masses = [one.parameters[::10].sum() for one in (whole, without)]
+    assert masses[1] == pytest.approx(masses[0], abs=0.1)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_what_hangs_is_counted_as_a_rule(sign: float) -> None:
+    """Unless the moments are clearly worse for it: chance, and forces, tell nothing."""
+    random = np.random.default_rng(0)
+    hangs, chance = random.standard_normal((2, 400, 6))
+    assert counts_below(hangs + chance, hangs)
+    assert not counts_below(chance, hangs)
+    assert counts_below(chance, sign * 0.1 * hangs)  # the squares are 1 % more
+    assert not counts_below(chance, sign * 0.5 * hangs)
+    loads = np.where(np.arange(6) < 3, 100.0 * hangs, 0.0)
+    assert counts_below(hangs + chance - loads, hangs)
+    assert not counts_below(chance + loads, hangs)

@@ -17,7 +17,7 @@ from plantar.estimation.delays.delay import Pair, closes
 from plantar.estimation.delays.sensor_delays import Balance
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
-from plantar.sensors.below_sensor import below_sensors
+from plantar.sensors.below_sensor import below_sensors, counts_below
 from plantar.sensors.load_errors import FootLoads
 from plantar.sensors.model_errors import drawn_imu_turns, drawn_parameter_errors, imu_turn_slopes
 from plantar.sensors.newton_sides import SLOW, STOOD, NewtonSides, carried, moving
@@ -157,7 +157,7 @@ def _along(
     motion = inertial_motion(robot, equation, signals, kept)
     readings = low_pass(wrenches, log.period, CUTOFF)
     below = below_sensors(robot, equation, motion, readings[kept], period)
-    parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
+    parameters, readings = model_parameters(robot.floating_model), readings - below.zeros
     # Copies: views of a long log's samples would keep all of them.
     loads = FootLoads.of(readings[kept].copy(), differentiate(readings, log.period)[kept].copy())
 
@@ -171,11 +171,16 @@ def _along(
         predicted, transfers = sides_of(inertial_motion(robot, equation, signals, kept, encoders_late=by))
         return np.asarray(predicted - np.sum(carried(transfers, loads.readings), axis=0))
 
-    by_encoders = (missing_late(log.period) - missing_late(-log.period)) / (2 * log.period)
     predicted, transfers = sides_of(motion)
+    band = (SLOW, np.inf) if signals.by_encoders is None else STOOD
+    if below.parameters.any():
+        hangs = np.asarray(equation.base_wrenches(motion, below.parameters[None])[0])
+        missed = predicted - np.sum(carried(transfers, loads.readings), axis=0)
+        if counts_below(*moving([missed, hangs], period, band)):
+            parameters, predicted = parameters - below.parameters, predicted - hangs
+    by_encoders = (missing_late(log.period) - missing_late(-log.period)) / (2 * log.period)
     # A copy holds no differences yet: of long logs, and of all together, these are large.
     signals = replace(signals)
-    band = (SLOW, np.inf) if signals.by_encoders is None else STOOD
     predicted, by_encoders = moving([predicted, by_encoders], period, band)
     sides = NewtonSides(loads, transfers, predicted, by_encoders, period, band)
     found = sides.closed(robot.uncertainty, label, round(SHORTEST / period))
