@@ -79,8 +79,12 @@ def play(
             for each in sliding:
                 each.push(data)
             mujoco.mj_step(model, data)  # sensors and frames are those of the state before the step
-            if row >= 0 and part == 0:
+            if row < 0:
+                continue
+            if part == 0:
                 read[row], axes[row], centres[row] = data.sensordata, data.xmat[bodies], data.xpos[bodies]
+            else:  # a blow shorter than a row passes on what it gives
+                read[row, 4:] += (data.sensordata[4:] - read[row, 4:]) / (part + 1)
     turns = axes.reshape(len(targets), len(rubber), 2, 3, 3)
     wrenches, tilt = {}, 0.0
     for number, name in enumerate(rubber):
