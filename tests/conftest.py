@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 
 # Small problems on few cores: threads inside threads only get in each other's way.
@@ -35,7 +36,11 @@ LONGEST = (
 )
 
 
+gc.disable()  # while tests are collected: nothing that they are made of is let go
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    gc.enable()
     items.sort(key=lambda item: not item.nodeid.startswith(LONGEST))
 
 
@@ -65,6 +70,14 @@ def no_power_cut() -> Iterator[None]:
     """What tests write need not be on the disk before they go on: that takes milliseconds a file."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(os, "fsync", lambda _: None)
+        yield
+
+
+@pytest.fixture(scope="module")
+def contact_at_one_step() -> Iterator[None]:
+    """An exported contact is looked at with one step alone, which takes a third of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("plantar.exporters.contact.fit.STEPS", (0.001,))
         yield
 
 

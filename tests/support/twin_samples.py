@@ -46,11 +46,11 @@ def short(plan: Plan, start: float, end: float) -> Plan:
     )
 
 
-PARTS = {"Tilt3": (14.5, 34.5), "Squat": (0.0, 10.0)}  # s: from leaning forward to leaning aside; two bows
+PARTS = {"Tilt3": (14.5, 34.5), "Squat": (0.0, 6.0)}  # s: from leaning forward to leaning aside; a bow
 
 
 def planned_part(motion: str, robot: RobotModel, **options: float | None) -> Plan:
-    """As `planned`, what shows all that the motion has to show in half of its time."""
+    """As `planned`, what shows all that the motion has to show in less than half of its time."""
     return short(planned(motion, robot, **options), *PARTS[motion])
 
 
