@@ -68,9 +68,8 @@ class TriangularFactor:
     @cached_property
     def _inverse(self) -> Array:
         """Of the regressor's R, (k, k); the pseudo-inverse, in scaled columns, where the rank is short."""
-        left, values, right, scale = self._decomposed
-        told = values[: self.rank]
-        return np.asarray((right[: self.rank].T / told) @ left[:, : self.rank].T / scale[:, None])
+        (left, values, right, scale), rank = self._decomposed, self.rank
+        return np.asarray((right[:rank].T / values[:rank]) @ left[:, :rank].T / scale[:, None])
 
     @property
     def condition_number(self) -> float:

@@ -148,7 +148,9 @@ def test_the_same_plan_gives_the_same_numbers() -> None:
 
 def test_an_elastoplastic_element_pulls_beside_the_spring() -> None:
     bush = Bush(434.0, 15.89, 323.0, 17.53, roll_slip_torque=2.0, roll_slip_angle=0.01)
-    rollout = roll(short(plan("Manual_right_roll"), 10.0, 13.0), Physics({"right": bush, "left": bush}, settle=1.0))
+    rollout = roll(
+        short(plan("Manual_right_roll"), 10.0, 13.0), Physics({"right": bush, "left": bush}, settle=1.0)
+    )
     angle, rate = rollout.bush["right"][:, 2], rollout.bush_rates["right"][:, 2]
     left_over = bush_forces(rollout, "right")[:, 2] - 323.0 * angle - 17.53 * rate
     assert np.abs(left_over).max() == pytest.approx(2.0, abs=1e-3)  # never more than the slip torque
@@ -161,7 +163,9 @@ def test_an_elastoplastic_element_pulls_beside_the_spring() -> None:
 
 def test_a_hardening_bush_pulls_with_the_cube() -> None:
     bush = Bush(434.0, 15.89, 323.0, 17.53, roll_hardening=5000.0)
-    rollout = roll(short(plan("Manual_right_roll"), 10.0, 11.0), Physics({"right": bush, "left": bush}, settle=0.5))
+    rollout = roll(
+        short(plan("Manual_right_roll"), 10.0, 11.0), Physics({"right": bush, "left": bush}, settle=0.5)
+    )
     angle, rate = rollout.bush["right"][:, 2], rollout.bush_rates["right"][:, 2]
     expected = 323.0 * angle + 17.53 * rate + 5000.0 * angle**3
     assert bush_forces(rollout, "right")[:, 2] == pytest.approx(expected, abs=2e-3)
