@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 
 # Small problems on few cores: threads inside threads only get in each other's way.
@@ -36,11 +35,7 @@ LONGEST = (
 )
 
 
-gc.disable()  # while tests are collected: nothing that they are made of is let go
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    gc.enable()
     items.sort(key=lambda item: not item.nodeid.startswith(LONGEST))
 
 

@@ -47,11 +47,11 @@ def short(plan: Plan, start: float, end: float) -> Plan:
 
 
 SETTLED = Physics(settle=1.0)  # soon enough for seconds of a motion
-PARTS = {"Tilt3": (14.5, 34.5), "Squat": (0.0, 6.0)}  # s: from leaning forward to leaning aside; a bow
+PARTS = {"Tilt3": (14.5, 34.5), "Squat": (0.0, 10.0)}  # s: from leaning forward to leaning aside; two bows
 
 
 def planned_part(motion: str, robot: RobotModel, **options: float | None) -> Plan:
-    """As `planned`, what shows all that the motion has to show in less than half of its time."""
+    """As `planned`, what shows all that the motion has to show in half of its time."""
     return short(planned(motion, robot, **options), *PARTS[motion])
 
 
