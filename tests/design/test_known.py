@@ -73,7 +73,9 @@ def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
         Parameter("left", "pitch", name, "", value, 0.0, None, 0.0, "usable", "")
         for name, value in (("slip_torque", 1.2), ("slip_angle", 0.012))
     ]
-    hidden = Diagnosis("left", "roll", "stiffness", "hidden memory", {"hidden memory": share}, 40.0, "")
+    hidden = Diagnosis(
+        "left", "roll", "stiffness", "hidden memory", {"hidden memory": share}, 40.0, "", advice=""
+    )
     usable = [row for row in rows if (row.name, row.verdict) == ("stiffness", "usable")]
     stiffest = max(row.interval95[1] for row in usable if row.interval95)
     known = Known.of(replace(result, parameters=tuple(rows), diagnosis=(hidden,)))

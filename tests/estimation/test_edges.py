@@ -185,7 +185,9 @@ def test_what_noise_takes_off_is_its_share_and_half_is_too_much() -> None:
     assert attenuation([regressed(0.51)], np.array([2.0])) is None
     other = replace(regressed(0.2), label="b", regressor=regressed(0.2).regressor + 4.0)
     blocks = [regressed(0.2), other]
-    assert offsets_moved(blocks, np.array([0.5])) == pytest.approx({"a": -1.5, "b": -3.5})
+    assert offsets_moved(blocks, np.array([0.5]), shared_offset=False) == pytest.approx(
+        {"a": -1.5, "b": -3.5}
+    )
     assert offsets_moved(blocks, np.array([0.5]), shared_offset=True) == pytest.approx({"a": -2.5, "b": -2.5})
 
 

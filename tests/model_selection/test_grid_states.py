@@ -32,7 +32,7 @@ def problem(better: np.ndarray, shift: float) -> np.ndarray:
 def fitted(rows: np.ndarray, data_set: np.ndarray, begin: np.ndarray | None = None) -> Fits:
     grams = np.einsum("rgcni,rgcnj->rgcij", rows, rows)
     pieces: Any = SimpleNamespace(grams=grams, data_set=data_set, run=np.arange(RUNS), size=len(VALUES))
-    return fit_pieces(pieces, np.ones(RUNS, dtype=bool), begin=begin)
+    return fit_pieces(pieces, np.ones(RUNS, dtype=bool), begin=begin, shared_offset=False)
 
 
 @pytest.mark.parametrize("better", [[0, 2, 1, 0], [2, 2, 2, 2]])

@@ -172,7 +172,7 @@ def _beside_parabolas(left: Array, parts: StanceRows) -> float:
     return rest
 
 
-def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool = False) -> dict[str, float]:
+def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool) -> dict[str, float]:
     """How each block's offset follows values that move by `change` (k,): its mean response stays explained."""
     means = {one.label: one.regressor.mean(axis=0) for one in blocks}
     if shared_offset:

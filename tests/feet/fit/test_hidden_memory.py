@@ -123,8 +123,8 @@ def choice(model: str = "kelvin_voigt", reach: float = 2 * SMALL, caution: str |
 
 
 def test_sensors_that_may_be_late_leave_it_open() -> None:
-    assert cautioned(choice(), timed=False, steps=True).caution == UNTIMED
-    assert cautioned(choice(caution="another"), timed=False, steps=True).caution == "another"
+    assert cautioned(choice(), timed=False, steps=True, torn=False).caution == UNTIMED
+    assert cautioned(choice(caution="another"), timed=False, steps=True, torn=False).caution == "another"
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_sensors_that_may_be_late_leave_it_open() -> None:
     ],
 )
 def test_small_motions_leave_it_open(model: str, reach: float, steps: bool, told: bool) -> None:
-    found = cautioned(choice(model, reach), timed=True, steps=steps).caution
+    found = cautioned(choice(model, reach), timed=True, steps=steps, torn=False).caution
     assert (found is not None) == told
     if found is not None:
         assert "bent by 0.013 rad" in found

@@ -14,6 +14,7 @@ from plantar.contact.stances import Stances
 from plantar.conventions import Array
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
+from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.put_right.encoders_of_fits import (
     Late,
@@ -56,7 +57,20 @@ def slipped(angle: Array) -> Array:
 def ready(recording: Recording, delay: Late = NEWTON) -> PreparedLogs:
     none: Any = None
     told = SensorDelay(0.005, 3e-4, np.inf, True, Note("delay", "info", ""), {}, delay.value, delay.std)
-    return PreparedLogs(none, (recording,), (), FeetSettings(), told, none, ())
+    return PreparedLogs(
+        none,
+        (recording,),
+        (),
+        FeetSettings(),
+        told,
+        none,
+        (),
+        gain_errors={},
+        torque_gains={},
+        turned={},
+        imu_turn=ImuTurn.unknown(0.0),
+        slow_filter=None,
+    )
 
 
 def fitted(logs: PreparedLogs, model: str = "kelvin_voigt") -> dict[str, FittedFoot]:

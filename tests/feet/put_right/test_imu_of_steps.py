@@ -58,7 +58,18 @@ def read(exact: Recording) -> Recording:
 def ready(recording: Recording) -> PreparedLogs:
     none: Any = None
     return PreparedLogs(
-        none, (recording,), (), FeetSettings(), none, none, (), imu_turn=ImuTurn.unknown(MOUNT)
+        none,
+        (recording,),
+        (),
+        FeetSettings(),
+        none,
+        none,
+        (),
+        imu_turn=ImuTurn.unknown(MOUNT),
+        gain_errors={},
+        torque_gains={},
+        turned={},
+        slow_filter=None,
     )
 
 
