@@ -106,6 +106,11 @@ def test_without_a_rival_stiffness_moves_by_what_other_axes_show() -> None:
     )
 
 
+def test_a_memory_that_was_chosen_hides_none() -> None:
+    fit = replace(axis_of(("elastoplastic", OTHER, 0.6)), hidden_share=0.3, model=MODELS["elastoplastic"])
+    np.testing.assert_array_equal(moved_by_memory(fit, steps=False), [0.0, 0.0])
+
+
 def test_without_a_caution_nothing_moves() -> None:
     fit = axis_of(("elastoplastic", OTHER, 0.95), caution=None)
     np.testing.assert_array_equal(moved_by_memory(replace(fit, hidden_share=0.3), steps=False), [0.0, 0.0])

@@ -109,7 +109,8 @@ def test_force_sensors_are_read_with_the_encoders_as_newton_ties_them() -> None:
     logs = ready(recorded(0.0), Late(0.0, NEWTON.std))
     logs = replace(logs, fitted=(logs.fitted[0].with_wrenches_later(-late),))
     logs = replace(logs, sensor_delay=replace(logs.sensor_delay, follows=1.25, feet={FOOT: 0.004}))
-    right = read_at(logs, Late(late / 1.25, 1e-4))
+    right = read_at(replace(logs, unseen=logs.fitted), Late(late / 1.25, 1e-4))
+    np.testing.assert_array_equal(right.unseen[0].bushes[FOOT].torque, right.fitted[0].bushes[FOOT].torque)
     assert right.sensor_delay.delay == pytest.approx(0.005 + late)
     assert right.sensor_delay.feet == pytest.approx({FOOT: 0.004 + late})
     torques = [one.fitted[0].bushes[FOOT].torque[50:-50, 0] for one in (logs, right, ready(recorded(0.0)))]
