@@ -52,6 +52,16 @@ def filtered(log: MotionLog) -> MotionLog:
     )
 
 
+def test_an_accelerometer_that_reads_nothing_says_nothing() -> None:
+    log = record(sway(duration=30.0))
+    orientation, rates, acceleration = parts(log)
+    silent, missing = acceleration.copy(), acceleration.copy()
+    silent[2000:2100], missing[2000:2100] = 0.0, np.nan
+    with np.errstate(all="raise"):
+        found = tilt_error_of(orientation, rates, silent, log.period)
+    assert found == tilt_error_of(orientation, rates, missing, log.period)
+
+
 def test_a_pull_is_noticed_and_a_true_attitude_has_none() -> None:
     log = record(sway(duration=30.0))
     assert not tilt_error_of(*parts(log), log.period).believed
