@@ -93,7 +93,7 @@ def test_values_offsets_and_squares_are_those_of_the_chosen_rows() -> None:
 
 
 def test_states_are_tried_over_all_their_range_or_closely_about_known_ones() -> None:
-    model, prepared = Elastoplastic(), prepare_data_sets(campaign(0, Rubber())[:1], 5.0)
+    model, prepared = Elastoplastic(), prepare_data_sets(campaign(0, Rubber())[:1], 5.0, drift=True)
     folds, shape = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared], np.array([[0.01]])
     runs = len(prepared[0].motion.runs)
     (everywhere,) = Pieces.of(model, prepared, folds, shape).initial_states

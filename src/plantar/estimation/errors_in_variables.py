@@ -98,7 +98,7 @@ def _unexplained(band: Array, whole: Mask, count: int) -> Array:
     return np.asarray(values - explaining @ solved(products[:, count:], products[:, :count]))
 
 
-def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool = False) -> Array | None:
+def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool) -> Array | None:
     """What the blocks' noise has taken off `values` (k,): to be added; None where noise is most of what there is."""
     size = len(values)
     noise = np.diag(

@@ -77,7 +77,7 @@ def fitted(logs: PreparedLogs, model: str = "kelvin_voigt") -> dict[str, FittedF
     fit = fit_axis(logs.fitted, FOOT, "pitch", FeetSettings(), MODELS[model])
     assert fit is not None
     thin: Any = SimpleNamespace(fitted=logs.fitted)
-    return {FOOT: FittedFoot(FOOT, None, {"pitch": fit}, {}, logs, thin, ())}  # type: ignore[arg-type]
+    return {FOOT: FittedFoot(FOOT, None, {"pitch": fit}, {}, logs, thin, (), elsewhere=None)}  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("model", "slip_torque"), [("kelvin_voigt", 0.0), ("elastoplastic", 3.0)])
