@@ -2,6 +2,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "check.hpp"
 #include "plantar/estimator_model.hpp"
@@ -14,8 +15,8 @@ const std::string TURN = " 1 2 3 4 5 6 7 8 9 ";
 const std::string ROBOT =
     "plantar.foot_estimator/1\nrobot biped\nweight 500\ncutoff 4\nwrench_delay 0.003 0.001\nwrench_gain_std 0.02\n"
     "joint knee\njoint hip\n";
-const std::string FOOT = "foot left\ncontact always\npath 1 1 -1" + TURN + "0.1 0.2 0.3\nbush" + TURN + "0.4 0.5 0.6\nsole" +
-                         TURN + "0.7 0.8 0.9\nsensor -1" + TURN +
+const std::string FOOT = "foot left\ncontact always\npath 1 1 -1" + TURN + "0.1 0.2 0.3\nbush" + TURN +
+                         "0.4 0.5 0.6\nsole" + TURN + "0.7 0.8 0.9\nsensor -1" + TURN +
                          "1.1 1.2 1.3\ncorner 0.1 0.05\nplace_std 0.003 0.004\nmisplaced 1 0.01 0.02 0.03 0.04\n"
                          "compliance 1e-5 2e-6\nlinear 1\nelement 0 0.01 4 0.5\n";
 

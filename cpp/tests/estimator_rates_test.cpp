@@ -1,4 +1,5 @@
 // Rates that are differences of joint angles, beside torques and angles that are read at the ticks.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -55,8 +56,8 @@ void a_waist_is_no_part_of_a_leg(bool knee_moves) {
   bool frozen = false;
   for (int i = 0; i < 1800; ++i) {
     const double t = i / 200.0, stood = std::min(t, 5.0);
-    const std::array<double, 5> joints = {0.3 * std::sin(t), 0.2 * std::sin(2.0 * (knee_moves ? t : stood)),
-                                          0.2 * std::sin(2.0 * stood), 0.2 * std::sin(2.0 * t), 0.2 * std::sin(2.0 * t)};
+    const double moves = 0.2 * std::sin(2.0 * t), stands = 0.2 * std::sin(2.0 * stood);
+    const std::array<double, 5> joints = {0.3 * std::sin(t), knee_moves ? moves : stands, stands, moves, moves};
     Sensors sensors(t);
     Reading reading = sensors.reading(t);
     reading.position = joints;
