@@ -55,7 +55,7 @@ def main() -> None:
             truth = rubber(kind, seed)
             data_sets = campaign(seed, truth)
             started = time.process_time()
-            choice = choose_model(data_sets)
+            choice = choose_model(data_sets, shared_offset=False, before=None)
             spent.append(time.process_time() - started)
             models[choice.fit.model.name] += 1
             pair = np.array([truth.stiffness, truth.damping])

@@ -43,7 +43,9 @@ def main() -> None:
         plan = own_plan(motion, robot)
         found: list[Rehearsal] = []
         for begin in range(0, given.draws, AT_ONCE):
-            played = rehearse(robot, plan, told, factors[begin : begin + AT_ONCE].tolist())
+            played = rehearse(
+                robot, plan, told, factors[begin : begin + AT_ONCE].tolist(), progress=lambda _: None
+            )
             found += [replace(one, rollout=None) for one in played]
         stood = [one for one in found if one.fell is None]
         for one in found:

@@ -88,7 +88,9 @@ def throughput(groups: int, rounds: int) -> None:
 
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        manifest = write_fleet(folder, 2, groups // 2, motion="Tilt3", preset="sensors", seed=0)
+        manifest = write_fleet(
+            folder, 2, groups // 2, motion="Tilt3", preset="sensors", seed=0, progress=lambda _: None
+        )
         rates: dict[int, list[float]] = {1: [], 2: []}
         for number in range(rounds):
             for workers in rates:

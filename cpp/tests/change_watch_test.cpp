@@ -133,7 +133,75 @@ void what_no_line_explains_is_no_ground() {
   check::that(watch.full(), "probes are short until one is clear");
 }
 
+// Two contrary probes become usual, each by half of what both were off: then nothing is suspected any more.
+void the_usual_scatter_follows_what_was_off() {
+  const auto bent = [](ChangeWatch& watch, double away) {
+    for (int i = 0; i < 8; ++i) watch.add(1.0, 0.0, 0.0, 0.00125 * i, 0.0, STIFFNESS * away * 0.00125 * i, ROW);
+    watch.judge(STIFFNESS, 0.0, 1e-6);
+  };
+  ChangeWatch watch;
+  bent(watch, -0.22), bent(watch, 0.18);
+  check::that(watch.calm(), "contrary ones");
+  double scatter = 0.01;
+  for (int probe = 0; probe < 2; ++probe) scatter += 0.05 * (0.5 * (0.22 * 0.22 + 0.18 * 0.18) - scatter);
+  bent(watch, -0.25);
+  check::near(watch.softer(), -0.4 * (-0.25 + 0.2) / scatter, 1e-3, "one more says less");
+}
+
+// Seven rows say nothing, however clear they are, and a probe that has begun is not calm.
+void a_probe_needs_rows() {
+  ChangeWatch watch;
+  probed(watch, -0.5, 0.02, PROBE_ROWS - 1);
+  check::that(watch.calm(), "seven rows");
+  watch.add(1.0, 0.0, 0.0, 0.01, 0.0, -4.0, ROW);
+  check::that(!watch.calm(), "a probe has begun");
+  watch.forget();
+  check::that(watch.calm() && !watch.full(), "its rows are forgotten, too");
+  probed(watch, 0.0, 0.02);
+  check::that(watch.calm(), "they do not speak in the next one");
+}
+
+// What speaks against a change is no more of one probe than what speaks for it.
+void one_contrary_probe_is_one_stumble() {
+  ChangeWatch watch;
+  probed(watch, -0.9, 0.02), probed(watch, -0.5, 0.02, 2 * PROBE_ROWS);
+  const double before = watch.softer();
+  ChangeWatch other = watch;
+  probed(other, 0.9, 0.02);
+  check::that(before > MOST_OF_ONE, "two for it");
+  check::near(other.softer(), before - MOST_OF_ONE, 1e-9, "one against it");
+}
+
+// Whatever a delay leaves open is open: a motion of one pace does not tell it from a stiffness.
+void a_probe_that_a_late_torque_explains_says_nothing() {
+  for (const double late : {0.0, -10.0}) {  // 1/s: of a torque that grows with the angle
+    ChangeWatch watch;
+    for (int i = 0; i < PROBE_ROWS; ++i) {
+      const double angle = 0.01 * i / PROBE_ROWS;
+      watch.add(1.0, 0.0, late * STIFFNESS * angle, angle, 0.0, -0.4 * STIFFNESS * angle, ROW);
+    }
+    watch.judge(STIFFNESS, 1.0, 0.02);
+    check::that((watch.softer() == 0.0) == (late != 0.0), "which of both it is");
+  }
+}
+
+// Each ends with what was suspected: it says nothing of the next ones, forgotten or taken as usual.
+void what_was_suspected_counts_once() {
+  ChangeWatch watch, fresh;
+  probed(watch, -0.5, 0.02);
+  watch.forget();
+  for (ChangeWatch* one : {&watch, &fresh})
+    for (int i = 0; i < 40; ++i) probed(*one, i % 2 ? 0.15 : -0.15, 0.02);
+  probed(watch, -0.37, 0.02), probed(fresh, -0.37, 0.02);
+  check::near(watch.softer(), fresh.softer(), 1e-9, "as if it had never been");
+}
+
 void run() {
+  the_usual_scatter_follows_what_was_off();
+  a_probe_needs_rows();
+  one_contrary_probe_is_one_stumble();
+  a_probe_that_a_late_torque_explains_says_nothing();
+  what_was_suspected_counts_once();
   what_a_probe_says_is_a_likelihood();
   a_probe_that_shows_too_little_says_nothing();
   a_short_probe_speaks();

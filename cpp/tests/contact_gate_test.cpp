@@ -31,6 +31,26 @@ void between_both_shares_it_stays_what_it_was() {
   check::that(gate.stances() == 1, "one stance so far");
 }
 
+void a_foot_that_always_stands_stands_from_the_first_reading() {
+  ContactGate gate(WEIGHT, true);
+  check::that(gate.step(0.0, WEIGHT, false, false, PERIOD) == ContactState::stance, "whatever its sensor reads");
+}
+
+void a_sole_that_does_not_lie_flat_still_lands() {
+  ContactGate gate(WEIGHT, false);
+  for (int tick = 0; tick < 1000; ++tick) gate.step(0.5 * WEIGHT, 0.0, false, true, PERIOD);
+  check::that(gate.contact() == ContactState::landing, "on its edge");
+  check::that(gate.step(0.5 * WEIGHT, 0.0, true, true, PERIOD) == ContactState::stance, "flat at last");
+}
+
+void a_foot_that_only_touched_has_not_stood() {
+  ContactGate gate(WEIGHT, false);
+  for (int step = 0; step < 5; ++step) after(gate, 300.0, 0.1), after(gate, 0.0, 0.4);
+  check::that(gate.stances() == 0, "no stance");
+  check::near(gate.settling(), 0.25, 1e-9, "and none that is usual");
+  check::near(gate.standing_for(), 0.0, 0.0, "in the air");
+}
+
 void a_blow_of_a_tick_is_no_landing() {
   ContactGate gate(WEIGHT, false);
   after(gate, 0.0, 0.1);
@@ -90,6 +110,9 @@ void a_foot_without_a_zero_lifts_where_others_carry() {
 }
 
 void run() {
+  a_foot_that_always_stands_stands_from_the_first_reading();
+  a_sole_that_does_not_lie_flat_still_lands();
+  a_foot_that_only_touched_has_not_stood();
   one_stance_changes_what_is_usual();
   a_foot_without_a_zero_lifts_where_others_carry();
   a_foot_that_stands_from_the_first_reading_lands_with_it();

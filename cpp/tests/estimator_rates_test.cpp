@@ -1,4 +1,5 @@
 // Rates that are differences of joint angles, beside torques and angles that are read at the ticks.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -45,7 +46,28 @@ void a_joint_turns(double rate_hz) {
   check::near(last.pitch.damping.value, TRUE_DAMPING[0], 2e-3 * TRUE_DAMPING[0], "damping");
 }
 
+// A leg that stands still beside one that moves is no fault; a chest that turns over both is no motion of that leg.
+void a_waist_is_no_part_of_a_leg(bool knee_moves) {
+  EstimatorModel model = two_feet();
+  model.joints = {"waist", "left_knee", "left", "right_knee", "right"};
+  for (int foot = 0; foot < 2; ++foot)
+    model.feet[foot].path = {{0, false, 1.0, HERE}, {1 + 2 * foot, false, 1.0, HERE}, {2 + 2 * foot, false, 1.0, HERE}};
+  FootEstimator estimator(model);
+  bool frozen = false;
+  for (int i = 0; i < 1800; ++i) {
+    const double t = i / 200.0, stood = std::min(t, 5.0);
+    const double moves = 0.2 * std::sin(2.0 * t), stands = 0.2 * std::sin(2.0 * stood);
+    const std::array<double, 5> joints = {0.3 * std::sin(t), knee_moves ? moves : stands, stands, moves, moves};
+    Sensors sensors(t);
+    Reading reading = sensors.reading(t);
+    reading.position = joints;
+    frozen = frozen || (estimator.step(reading)[0].flags & FROZEN);
+  }
+  check::that(frozen == knee_moves, "an ankle that stands while its own leg and its twin move");
+}
+
 void run() {
+  for (const bool knee_moves : {false, true}) a_waist_is_no_part_of_a_leg(knee_moves);
   for (const double rate_hz : {50.0, 200.0, 1000.0}) a_joint_turns(rate_hz);
 }
 

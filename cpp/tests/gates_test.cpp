@@ -63,6 +63,17 @@ void a_zero_needs_a_piece_between_both_ends() {
   check::that(swung(64.0, 300).known() && !swung(69.0, 300).known(), "a force of 100 N in all is a fifth of the weight");
 }
 
+// A foot that touches in mid-swing may have been loaded before it, too.
+void what_came_before_a_touch_is_no_zero() {
+  AirZero zero;
+  for (int tick = 0; tick < 900; ++tick) {
+    const double read = tick < 400 ? 15.0 : tick < 450 ? 60.0 + 0.6 * tick : 7.0;
+    zero.swing({0.0, 0.0, read, 0.0, 0.0, 0.0}, read, WEIGHT, PERIOD);
+  }
+  zero.landed();
+  check::near(zero.value()[2], 7.0, 1e-9, "the mean behind it");
+}
+
 // The last eight swings count alike; the ninth as much as each of them.
 void a_zero_drifts() {
   AirZero zero;
@@ -115,6 +126,28 @@ void an_edge_is_told_from_where_its_visit_began() {
   check::that(!leans(0.06), "begun anew, it does not");
 }
 
+// A bush that is softer than it was thought bends on by half of what its torque explains.
+void a_softer_bush_is_no_lean() {
+  for (const double beyond : {0.0075, 0.0085}) {
+    EdgeWatch watch(WEIGHT, 0.06);
+    bool told = false;
+    for (int tick = 0; tick < 400; ++tick) {
+      const double bent = tick < 200 ? 0.0 : 0.01, angle = tick < 200 ? 0.0 : 0.01 + beyond;
+      told = watch.step(0.004, 300.0, {angle, 0.0}, {bent, 0.0}, PERIOD);
+    }
+    check::that(told == (beyond > 0.008), "beyond three milliradians and half the bend");
+  }
+}
+
+void readings_behind_a_pause_are_not_smoothed_with_those_before() {
+  EdgeWatch watch(WEIGHT, 0.06);
+  for (int tick = 0; tick < 200; ++tick) watch.step(0.004, 300.0, {0.0, 0.0}, {0.0, 0.0}, PERIOD);
+  watch.restart();
+  bool told = false;
+  for (int tick = 0; tick < 200; ++tick) told = watch.step(0.004, 300.0, {0.03, 0.0}, {0.0, 0.0}, PERIOD) || told;
+  check::that(!told, "another angle is where the visit begins");
+}
+
 void the_middle_of_a_small_sole_is_not_its_edge() {
   const auto leans = [](double half_width, double inside) {
     EdgeWatch watch(WEIGHT, half_width);
@@ -139,6 +172,7 @@ void a_delay_stays_in_doubt_until_it_is_excluded() {
   check::that(!late(0.012, 0.007), "or less than sure");
   check::that(late(0.012, 0.001), "more, and sure");
   check::that(late(0.0045, 0.001), "it may still be as late");
+  check::that(late(0.0, 0.0), "nothing is seen: nothing is excluded");
   check::that(!late(0.0035, 0.001), "it cannot be");
 }
 
@@ -200,6 +234,9 @@ void noise_of_a_rate_is_that_of_its_angle() {
 }
 
 void run() {
+  what_came_before_a_touch_is_no_zero();
+  a_softer_bush_is_no_lean();
+  readings_behind_a_pause_are_not_smoothed_with_those_before();
   a_zero_is_the_mean_of_swings_without_their_ends();
   a_swing_that_touches_is_none();
   a_zero_needs_a_piece_between_both_ends();

@@ -58,7 +58,45 @@ void a_tenth_of_the_stiffness_is_too_wide() {
   }
 }
 
+constexpr double COMPLIANCE = 2e-5;
+
+// A slide under a load that changes, pushed aside: the bush's centre rises with it. `told` is known of it before; roll
+// shows `more` of it than pitch.
+Parameter compliance_learnt(double told, double more) {
+  EstimatorModel model = two_feet();
+  for (FootModel& foot : model.feet) foot.compliance = told, foot.compliance_std = 2.0 * COMPLIANCE;
+  FootEstimator estimator(model);
+  FootEstimate last;
+  for (int i = 0; i < 12000; ++i) {
+    const double t = i / 200.0, x = 60.0 * std::sin(2.7 * t), y = 60.0 * std::sin(3.1 * t);
+    const double load = 300.0 + 80.0 * std::sin(1.3 * t);
+    Sensors sensors(t, 0.0, load);
+    for (auto& w : sensors.wrench)
+      w[0] = x, w[1] = y, w[3] -= (COMPLIANCE + more) * load * y, w[4] += COMPLIANCE * load * x;
+    last = estimator.step(sensors.reading(t))[0];
+  }
+  return last.compliance;
+}
+
+// No sensor has noise, and still no model has all of what was learnt.
+void a_compliance_is_never_sure() {
+  for (const double told : {0.0, 0.5 * COMPLIANCE}) {
+    const Parameter found = compliance_learnt(told, 0.0);
+    near_share(found.value, COMPLIANCE, "a compliance");
+    near_share(found.std, 0.07 * (COMPLIANCE - told), "its deviation");
+    near_share(found.half_width, 1.96 * 0.07 * (COMPLIANCE - told), "and half width");
+  }
+  check::that(compliance_learnt(0.0, COMPLIANCE).std > 0.3 * COMPLIANCE, "axes that differ");
+}
+
+void a_compliance_that_nothing_shows_has_a_width() {
+  const Parameter found = after_a_minute(two_feet()).compliance;
+  check::that(std::isfinite(found.std) && std::isfinite(found.half_width), "no compliance, but a number");
+}
+
 void run() {
+  a_compliance_is_never_sure();
+  a_compliance_that_nothing_shows_has_a_width();
   what_was_told_widens();
   samples_apart_leave_the_damping_open();
   a_tenth_of_the_stiffness_is_too_wide();

@@ -64,6 +64,16 @@ void an_attitude_goes_on_by_the_gyroscope() {
   }
 }
 
+// The second reading behind a pause counts as much as the first one, however long was read before.
+void an_attitude_begun_anew_is_a_mean_of_few() {
+  constexpr double STILL[3] = {}, LEVEL[3] = {0.0, 0.0, 9.81}, TILTED[3] = {0.098, 0.0, 9.81};
+  AttitudeFilter filter;
+  for (int tick = 0; tick < 6000; ++tick) filter.step(STILL, LEVEL, 0.01);
+  filter.restart();
+  filter.step(STILL, TILTED, 0.01);
+  check::near(up(filter.step(STILL, LEVEL, 0.01))[0], 0.0, 1e-4, "turned onto it at once");
+}
+
 // Tilts of a reading come in with the blend's time constant, at first as the mean of all readings.
 void an_accelerometer_tells_up_slowly() {
   constexpr double DT = 0.01, TILT = 0.01;
@@ -182,6 +192,7 @@ void white_noise_is_told_from_motion() {
 }
 
 void run() {
+  an_attitude_begun_anew_is_a_mean_of_few();
   an_attitude_begins_with_up_where_the_accelerometer_reads_it();
   an_attitude_goes_on_by_the_gyroscope();
   an_accelerometer_tells_up_slowly();

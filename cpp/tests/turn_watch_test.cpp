@@ -163,7 +163,26 @@ void a_usual_load_is_followed() {
   }
 }
 
+// A still attitude beside a gyroscope that sways, at once or by little for long; then readings were missing.
+void what_differed_before_a_pause_is_forgotten() {
+  for (const double size : {0.06, 0.004}) {
+    TurnWatch watch;
+    bool told = false;
+    double time = 0.0;
+    for (; time < 20.0; time += PERIOD) {
+      const double rate[3] = {size * std::sin(3.0 * time), size * std::cos(4.0 * time), 0.0};
+      told = watch.differ({0.0, 0.0, 1.0}, rate, PERIOD) || told;
+    }
+    check::that(told, "they differ");
+    watch.restart();
+    const double rests[3] = {};
+    for (int tick = 0; tick < 3; ++tick)
+      check::that(!watch.differ({0.0, 0.0, 1.0}, rests, PERIOD), "begun anew, nothing is known");
+  }
+}
+
 void run() {
+  what_differed_before_a_pause_is_forgotten();
   gains_differ_beyond_a_half();
   larger_differences_are_told_sooner();
   small_differences_are_none();

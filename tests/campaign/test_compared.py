@@ -44,6 +44,9 @@ def test_errors_are_signed_and_in_percent_of_the_truth() -> None:
     assert stiffness.error_percent == pytest.approx(100 * 6 / 434)
     assert stiffness.paper_way_error_percent == pytest.approx(-100 * 4 / 434)
     assert (stiffness.covered, damping.covered) == (False, True)
+    unknown = replace(parameter("stiffness", 440.0, 5.0), interval95=None)
+    (row,) = parameters_beside(replace(result(), parameters=(unknown,)), result(), PAPER)
+    assert row.covered is None, "no interval, no claim"
     table = table_1([stiffness, damping])
     assert [cell.mark for cell in (table.rows[0][5], table.rows[1][5])] == ["bad", "good"]
     assert table.rows[0][10].text == "434.0 (0.20 %)"

@@ -35,7 +35,7 @@ def test_figures_with_numbers_come_first_and_the_simulator_has_a_section(
         present, "write_feet_report", lambda folder, **more: seen.update(more) or folder / "report.html"
     )
     campaign = SimpleNamespace(directory=tmp_path, replayed=replayed)
-    written = present.write_campaign_report(campaign)  # type: ignore[arg-type]
+    written = present.write_campaign_report(campaign, progress=lambda _: None)  # type: ignore[arg-type]
     names = ["figure03", "figure05", *(one.name for one in simulator)]
     assert written.figures == tuple(tmp_path / "figures" / f"{name}.svg" for name in names)
     assert (written.report, written.scene) == (tmp_path / "report.html", tmp_path / "robot.html")

@@ -42,8 +42,8 @@ def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     rows = [
-        comparison.KindScore("squat", "joints", 0.003, 0.004, 2.5, 12.0),
-        comparison.KindScore("sway", "joints", 0.0, 0.0, 1.5, 12.0),
+        comparison.KindScore("squat", "joints", 0.003, 0.004, 2.5, 12.0, fell=None),
+        comparison.KindScore("sway", "joints", 0.0, 0.0, 1.5, 12.0, fell=None),
         comparison.KindScore("squat", "rigid", None, None, None, 0.0, 1.5),
         comparison.KindScore("sway", "rigid", 0.01, 0.01, 9.0, 4.5, 5.5),
     ]

@@ -37,7 +37,7 @@ def printed(*drawn: object) -> list[list[str]]:
 def summary(*feet: FootSummary) -> LogSummary:
     sampling = Sampling(100.0, 0.0005, ((1.0, 1.5),))
     columns = (ColumnRange("joint.a.position", -0.5, 1.25, 7),)
-    return LogSummary("sway", 20.0, 2001, sampling, columns, 60.0, 59.5, feet, (), (), ())
+    return LogSummary("sway", 20.0, 2001, sampling, columns, 60.0, 59.5, feet, (), (), (), assumptions=())
 
 
 def test_a_log_is_summed_up() -> None:

@@ -197,7 +197,9 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
     sampling = Sampling(100.0, 0.0005, tuple((float(at), at + 0.25) for at in range(1, 8)))
     columns = tuple(ColumnRange(f"c{place}", 0.0, 1.0, place) for place in range(8))
     findings = (Finding("air_reading", "reads 3 N in the air"), Finding("gap", "a hole", fatal=True))
-    log = LogSummary("sway", 20.0, 2001, sampling, columns, 60.0, 59.5, (foot,), (K, C), findings, ())
+    log = LogSummary(
+        "sway", 20.0, 2001, sampling, columns, 60.0, 59.5, (foot,), (K, C), findings, (), assumptions=()
+    )
     lines = shown(_print, log, False, "URDF")
     heads, rows = under(lines, "Feet")
     assert heads == [
@@ -239,7 +241,7 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
 
 
 def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
-    score = KindScore("squat", "joints", 0.0015, 0.002, 3.25, 12.0)
+    score = KindScore("squat", "joints", 0.0015, 0.002, 3.25, 12.0, fell=None)
     assert _cells(score) == ("squat", "joints", "1.5", "2", "3.25")
     assert score.chest == pytest.approx(0.0025)
     assert _cells(KindScore("squat", "rigid", None, None, None, 0.0, 1.5))[2:] == ("falls",) * 3

@@ -19,7 +19,7 @@ from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LO
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
-from plantar.exporters.job import Stance
+from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.motions.plan import Plan
@@ -141,14 +141,14 @@ def test_the_picture_and_the_numbers_go_to_a_folder(
 
 
 def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: MotionLog) -> None:
-    made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log))
+    made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), swing=None, stance=USUAL, tips=False)
     assert tuple(made) == KINDS
     names = {kind: {e.get("name", "") for e in ET.fromstring(one.xml).iter()} for kind, one in made.items()}
     assert "LLEG_BUSH_PITCH" in names[JOINTS]
     assert "left_contact_0" in names[CONTACT]
     assert not {"LLEG_BUSH_PITCH", "left_contact_0"} & names[AS_IT_WAS]
     assert "LLEG_BUSH_PITCH" not in names[CONTACT]
-    tipping = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), tips=True)
+    tipping = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), tips=True, swing=None, stance=USUAL)
     assert tuple(tipping) == (*KINDS, WITH_LOOP), "a sole that tips asks for the loop, whatever the rubber"
     assert tipping[WITH_LOOP].force is plantar.FootHysteresis
 
@@ -166,7 +166,9 @@ def test_a_contact_whose_slip_the_loop_applies_moves_as_the_joints_do(tmp_path: 
 
 
 def test_feet_that_turn_about_the_bush_stand_lower(result: FeetResult, log: MotionLog) -> None:
-    made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), stance=Stance("bush"))
+    made = scenes(
+        result, hrp2.robot(), plan_of(hrp2.robot(), log), stance=Stance("bush"), swing=None, tips=False
+    )
     assert {kind: one.lower for kind, one in made.items()} == pytest.approx(
         {AS_IT_WAS: 0.0, JOINTS: 0.0, CONTACT: 0.02}
     )
@@ -237,7 +239,7 @@ def test_sensors_with_axes_of_their_own_carry_the_robot_too(log: MotionLog) -> N
 
 
 def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:
-    stood = KindScore("a", CONTACT, 3e-3, 4e-3, 1.0, 20.0)
+    stood = KindScore("a", CONTACT, 3e-3, 4e-3, 1.0, 20.0, fell=None)
     fell = KindScore("b", CONTACT, None, None, None, 0.0, 0.4)
     assert stood.chest == pytest.approx(5e-3)
     assert pooled([stood, stood], CONTACT) == pytest.approx(5e-3)
@@ -306,7 +308,14 @@ def test_zeros_of_the_sensors_are_no_rest_angles_of_what_is_played(
 ) -> None:
     offset = Offset("left", "pitch", "Tilt3", "N.m", 5.0, 0.1)
     found, without = (
-        scenes(replace(result, offsets=offsets), hrp2.robot(), plan_of(hrp2.robot(), log))
+        scenes(
+            replace(result, offsets=offsets),
+            hrp2.robot(),
+            plan_of(hrp2.robot(), log),
+            swing=None,
+            stance=USUAL,
+            tips=False,
+        )
         for offsets in ((offset,), ())
     )
     for kind in KINDS:

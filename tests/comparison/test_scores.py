@@ -111,6 +111,9 @@ def test_as_long_as_soles_lie_flat(
 
 
 def test_all_motions_weigh_alike() -> None:
-    rows = [KindScore(name, "rigid", chest, 0.0, 1.0, 9.0) for name, chest in (("a", 0.003), ("b", 0.004))]
+    rows = [
+        KindScore(name, "rigid", chest, 0.0, 1.0, 9.0, fell=None)
+        for name, chest in (("a", 0.003), ("b", 0.004))
+    ]
     assert pooled(rows, "rigid") == pytest.approx(0.005 / np.sqrt(2))
     assert pooled(rows, "other") is None

@@ -206,7 +206,7 @@ def test_stretches_are_widened_and_joined() -> None:
 def test_a_phase_ends_where_support_or_reason_changes() -> None:
     support = np.array([0, 0, 1, 1, 1, 1], dtype=np.int8)
     code = np.array([0, 0, 0, 0, 1, 1], dtype=np.int8)
-    contact = FootContact(support, code, (LeftOut(Reason.SETTLING),))
+    contact = FootContact(support, code, (LeftOut(Reason.SETTLING, detail=""),))
     found = contact.phases("m", "left", np.arange(6) * 0.5)
     assert [(one.start, one.end, one.support, one.used) for one in found] == [
         (0.0, 1.0, SUPPORTS[0], True),

@@ -29,7 +29,7 @@ def height(robot: RobotModel, log: MotionLog) -> np.ndarray:
 def test_a_zero_of_a_joint_and_a_bush_beside_its_place(robot: RobotModel) -> None:
     log = record(sway("sway", 3))
     robot = replace(robot, uncertainty=Uncertainty())
-    changes = dict(height_changes(log, robot))
+    changes = dict(height_changes(log, robot, rows=slice(None)))
     joint = next(name for name in changes if name.endswith("ankle_roll"))
     column = f"joint.{joint}.position"
     moved = log.with_columns({column: log.columns[column] + 0.001})
@@ -42,13 +42,16 @@ def test_a_zero_of_a_joint_and_a_bush_beside_its_place(robot: RobotModel) -> Non
 
 
 def test_an_exact_robot_has_no_causes(robot: RobotModel) -> None:
-    assert list(height_changes(record(sway("sway", 3)), replace(robot, uncertainty=EXACT))) == []
+    assert (
+        list(height_changes(record(sway("sway", 3)), replace(robot, uncertainty=EXACT), rows=slice(None)))
+        == []
+    )
 
 
 def test_changes_follow_the_deviations(robot: RobotModel) -> None:
     log = record(sway("sway", 3))
     once, twice = (
-        dict(height_changes(log, replace(robot, uncertainty=Uncertainty(imu_mount=mount))))
+        dict(height_changes(log, replace(robot, uncertainty=Uncertainty(imu_mount=mount)), rows=slice(None)))
         for mount in (0.01, 0.02)
     )
     np.testing.assert_allclose(twice["imu x"], 2 * once["imu x"])
@@ -58,7 +61,9 @@ def test_changes_follow_the_deviations(robot: RobotModel) -> None:
 def test_an_imu_that_is_turned_about_each_axis(robot: RobotModel) -> None:
     """As a log whose attitude is turned by the mount's deviation about that axis of the IMU."""
     log = record(sway("sway", 3))
-    changes = dict(height_changes(log, replace(robot, uncertainty=Uncertainty(imu_mount=0.01))))
+    changes = dict(
+        height_changes(log, replace(robot, uncertainty=Uncertainty(imu_mount=0.01)), rows=slice(None))
+    )
     names = [f"imu.{robot.imu.name}.orientation.{axis}" for axis in "wxyz"]
     believed = Rotation.from_quat(log.stack(names), scalar_first=True)
     assert {name for name in changes if name.startswith("imu ")} == {"imu x", "imu y", "imu z"}
@@ -77,7 +82,9 @@ def test_an_imu_that_is_turned_about_each_axis(robot: RobotModel) -> None:
 def test_a_log_without_orientation_has_the_same_causes(robot: RobotModel) -> None:
     """One without causes would pass for one in which nothing can be wrong, and so would all logs beside it."""
     log, robot = noisy(record(sway("sway", 3)), 3), replace(robot, uncertainty=Uncertainty())
-    known, derived = (dict(height_changes(one, robot)) for one in (log, without(log, "orientation")))
+    known, derived = (
+        dict(height_changes(one, robot, rows=slice(None))) for one in (log, without(log, "orientation"))
+    )
     assert derived.keys() == known.keys()
     for cause, change in known.items():
         np.testing.assert_allclose(derived[cause], change, atol=0.1 * np.abs(change).max() + 2e-6)

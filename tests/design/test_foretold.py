@@ -19,7 +19,7 @@ UNPLAYED = Design(
     settings=DesignSettings(design_samples.STIFFNESS), robot=hrp2.robot(), told=design_samples.told(),
     factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None,
     coefficients=np.zeros(0), trajectory=None, rehearsals=(), pairs=0,
-)  # fmt: skip
+ known=None)  # fmt: skip
 
 
 def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:

@@ -70,7 +70,7 @@ def test_a_smaller_motion_promises_less_and_what_is_known_promises_more() -> Non
     more = half_widths(reach, coefficients, known)
     assert (more[:, 0, 0] < whole[:, 0, 0]).all()
     assert more[:, 1] == pytest.approx(whole[:, 1])
-    assert badness(reach, coefficients, "D") < badness(reach, 0.5 * coefficients, "D")
+    assert badness(reach, coefficients, "D", known=0.0) < badness(reach, 0.5 * coefficients, "D", known=0.0)
 
 
 def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,7 +109,7 @@ def test_what_is_narrower_than_wanted_is_bought_last(monkeypatch: pytest.MonkeyP
     def of(stiffness: float, damping: float, criterion: Criterion) -> float:
         widths = np.array([stiffness, damping]) * objective.WANTED * np.ones((3, 2, 2, 2))
         monkeypatch.setattr(objective, "half_widths", lambda *_: widths)
-        return float(badness(reach, coefficients, criterion))
+        return float(badness(reach, coefficients, criterion, known=0.0))
 
     assert of(1.5, 0.25, "widest") > of(1.3, 0.5, "widest")
     assert of(0.5, 0.25, "widest") < of(0.5, 0.5, "widest"), "it still counts"
@@ -121,8 +121,8 @@ def test_motions_together_count_as_one_by_one(criterion: Criterion) -> None:
     reach, coefficients = design_samples.reach(), design_samples.coefficients()
     several = np.linspace(0.3, 1.0, 6).reshape(2, 3, 1) * coefficients
     several[1, :, ::3] *= -0.5
-    found = badness(reach, several, criterion)
-    alone = [[float(badness(reach, one, criterion)) for one in row] for row in several]
+    found = badness(reach, several, criterion, known=0.0)
+    alone = [[float(badness(reach, one, criterion, known=0.0)) for one in row] for row in several]
     assert found == pytest.approx(np.array(alone), rel=1e-9)
     assert len(set(np.round(found.ravel(), 6))) == 6
 
@@ -137,7 +137,7 @@ def test_widths_that_are_all_as_wanted_times_a_number_count_as_its_logarithm(
     monkeypatch.setattr(objective, "vertical_half_width", lambda *_: wide)
     all_alike = 1.5 * np.array(objective.WANTED) * np.ones((3, 2, 2, 2))
     monkeypatch.setattr(objective, "half_widths", lambda *_: all_alike)
-    assert badness(reach, coefficients, criterion) == pytest.approx(np.log(1.5))
+    assert badness(reach, coefficients, criterion, known=0.0) == pytest.approx(np.log(1.5))
 
 
 def test_a_delay_shows_where_force_and_moments_change_and_costs_damping(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -60,6 +61,9 @@ def test_a_weak_stiffness_widens_the_range_and_is_not_believed() -> None:
     assert Known.of(replace(result, parameters=nothing)).stiffness == pytest.approx(known.stiffness)
 
 
+OTHERS: tuple[dict[str, Any], ...] = ({"foot": "right"}, {"axis": "pitch"}, {"name": "damping"})
+
+
 def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
     """Found: 300 in roll, of which an element makes up to 40 %; the sum is sure to 3 %. Pitch shows the element."""
     result, low, share = found(), 0.6 * 300.0, 1.0 - (0.03 / 0.4) ** 2
@@ -73,9 +77,12 @@ def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
         Parameter("left", "pitch", name, "", value, 0.0, None, 0.0, "usable", "")
         for name, value in (("slip_torque", 1.2), ("slip_angle", 0.012))
     ]
-    hidden = Diagnosis("left", "roll", "stiffness", "hidden memory", {"hidden memory": share}, 40.0, "")
+    hidden = Diagnosis(
+        "left", "roll", "stiffness", "hidden memory", {"hidden memory": share}, 40.0, "", advice=""
+    )
     usable = [row for row in rows if (row.name, row.verdict) == ("stiffness", "usable")]
     stiffest = max(row.interval95[1] for row in usable if row.interval95)
+    of_others = tuple(replace(hidden, **other, variance_shares={"hidden memory": 0.5}) for other in OTHERS)
     known = Known.of(replace(result, parameters=tuple(rows), diagnosis=(hidden,)))
     assert known.element == pytest.approx(
         [100.0, 50.0]
@@ -85,7 +92,7 @@ def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
     softer = tuple(
         replace(row, value=200.0, interval95=(196.0, 204.0)) if row in usable else row for row in rows
     )
-    known = Known.of(replace(result, parameters=softer, diagnosis=(hidden,)))
+    known = Known.of(replace(result, parameters=softer, diagnosis=(*of_others, hidden)))
     assert known.high == pytest.approx(WIDER * (1.03 * 300.0 - 50.0))
     alone = tuple(row for row in rows if row not in usable)
     known = Known.of(replace(result, parameters=alone, diagnosis=(hidden,)))

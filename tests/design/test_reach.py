@@ -31,10 +31,10 @@ def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
     """Of a robot of this weight, however soft its springs were told: limits would be passed in rehearsals."""
     lines = Lines.drawn(20.0, np.random.default_rng(1))
     soft = Softness.told(hrp2.robot(), 300.0, None)
-    found = Reach(design_samples.legs(), design_samples.linear(), lines, soft, [soft]).element
+    found = Reach(design_samples.legs(), design_samples.linear(), lines, soft, [soft], element=None).element
     assert found == pytest.approx(np.array(SLIP_TORQUE) / SLIP_ANGLE)
     stiff = Softness.told(hrp2.robot(), 800.0, None)
-    more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff]).element
+    more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff], element=None).element
     assert more == pytest.approx(800.0 * np.array(SHARE))
     measured = np.array([2.0, 0.5]) * np.array(SLIP_TORQUE) / SLIP_ANGLE
     known = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff], measured).element

@@ -13,7 +13,7 @@ import pytest
 import design_samples
 from plantar.design import story
 from plantar.design.rehearsals import attempt, rehearsal
-from plantar.design.rehearsals.rehearsal import Rehearsal
+from plantar.design.rehearsals.rehearsal import DRAWS, Rehearsal
 from plantar.design.story import (
     DesignSettings,
     design_motion,
@@ -176,9 +176,11 @@ def test_each_draw_of_a_rehearsal_has_its_own_sensors_and_a_floor_for_its_steps(
             lambda factor, _, rollout, world: Rehearsal(factor, rollout=rollout, world=world),
         ),
     ):
-        soft, told = rehearsal.rehearse(hrp2.robot(), Mock(), design_samples.told(), [0.5, 0.707])
-        assert soft.feet_found(hrp2.robot()) == (500, 501, 502, 503)
-        assert told.feet_found(hrp2.robot()) == (707, None, 709, 710)
+        soft, told = rehearsal.rehearse(
+            hrp2.robot(), Mock(), design_samples.told(), [0.5, 0.707], progress=lambda _: None
+        )
+        assert soft.feet_found(hrp2.robot(), draws=DRAWS) == (500, 501, 502, 503)
+        assert told.feet_found(hrp2.robot(), draws=DRAWS) == (707, None, 709, 710)
         assert told.feet_found(hrp2.robot(), 2) == (707, None)
     assert seeds == [500, 501, 502, 503, 707, 708, 709, 710, 707, 708]
     told_once = design_samples.told()

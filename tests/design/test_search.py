@@ -56,10 +56,10 @@ def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
             patch.object(search, "TRIES", 2),
             patch.object(search, "STARTS", 2),
         ):
-            return best_motion([reach_on], 20.0, "A", seed)
+            return best_motion([reach_on], 20.0, "A", seed, known=0.0, progress=lambda _: None)
 
     def reach_on(lines: Lines) -> Reach:
-        reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
+        reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told], element=None)
         tried.append(lines.frequencies)
         return reach
 
@@ -76,7 +76,7 @@ def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
 def test_beginnings_take_the_stances_in_turn_and_the_best_one_stands_as_its_own_did() -> None:
     def reach_of(stance: int) -> Callable[[Lines], Reach]:
         def reach_on(lines: Lines) -> Reach:
-            reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told])
+            reach = Reach(design_samples.legs(), design_samples.linear(), lines, told, [told], element=None)
             stances.append((stance, lines.frequencies))
             return reach.held(np.full((1, len(KINDS)), 1.0 if stance == 1 else 0.1))
 
@@ -90,7 +90,9 @@ def test_beginnings_take_the_stances_in_turn_and_the_best_one_stands_as_its_own_
         patch.object(search, "STARTS", 4),
         patch.object(search, "FOLLOWED", 2),
     ):
-        stance, lines, _ = best_motion([reach_of(0), reach_of(1)], 20.0, "A", 2)
+        stance, lines, _ = best_motion(
+            [reach_of(0), reach_of(1)], 20.0, "A", 2, known=0.0, progress=lambda _: None
+        )
     assert [each for each, _ in stances] == [0, 1, 0, 1, 1, 1], "the best two are followed"
     assert stance == 1, "whose limits are wider"
     assert any(np.array_equal(lines.frequencies, own) for each, own in stances if each == 1)
@@ -106,7 +108,7 @@ def test_a_motion_that_was_rehearsed_is_bettered_by_small_steps(tries: int) -> N
     start = 0.5 * design_samples.coefficients()
     linear = patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope)
     with linear, patch.object(search, "TRIED", tries):
-        found = better_motion(reach, "widest", start)
+        found = better_motion(reach, "widest", start, known=0.0)
     moved = np.abs(found - start / reach.used(start)) / units
     assert 0.1 * tries - 0.02 < moved.max() < 0.1 * tries + 0.02
 
@@ -119,7 +121,7 @@ def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> 
     slope = np.random.default_rng(3).standard_normal(units.size) / units
     linear = patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope)
     with linear, patch.object(search, "TRIED", 25):
-        found = better_motion(reach, "widest", 0.1 * units)  # every beginning leads there
+        found = better_motion(reach, "widest", 0.1 * units, known=0.0)  # every beginning leads there
     rows = reach._watched.reshape(reach.lines.size, -1).T
     high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))
     shares = np.vstack([rows / high[:, None], -rows / low[:, None]])

@@ -31,7 +31,7 @@ def test_pitch_is_that_of_a_pendulum_on_two_springs() -> None:
     """I α̈ + 2 C α̇ + (2 K - m g h) α = -moment, by Runge and Kutta."""
     moment = 5.0 * SWAY
     wrench = np.stack([0 * TIME, 0 * TIME, moment])
-    found = respond(PENDULUM, BUSH, wrench, flat(), PERIOD)
+    found = respond(PENDULUM, BUSH, wrench, flat(), PERIOD, beside=(0.0, 0.0))
     stiff = 2 * BUSH.stiffness - PENDULUM.mass * GRAVITY * PENDULUM.height
 
     def rate(t: float, y: np.ndarray) -> list[float]:
@@ -48,7 +48,7 @@ def test_pitch_is_that_of_a_pendulum_on_two_springs() -> None:
 def test_ankles_against_one_another_bend_the_rubber_and_leave_the_body() -> None:
     tilts = flat()
     tilts["left"][1], tilts["right"][1] = 0.02 * SWAY, -0.02 * SWAY
-    found = respond(PENDULUM, BUSH, np.zeros((3, TIME.size)), tilts, PERIOD)
+    found = respond(PENDULUM, BUSH, np.zeros((3, TIME.size)), tilts, PERIOD, beside=(0.0, 0.0))
     assert found.deflection["left"][0] == pytest.approx(-0.02 * SWAY, abs=1e-9)
     quick = 0.02 * np.gradient(SWAY, PERIOD)
     assert found.rate["left"][0] == pytest.approx(-quick, abs=2e-3 * np.abs(quick).max())
@@ -59,7 +59,9 @@ def test_ankles_against_one_another_bend_the_rubber_and_leave_the_body() -> None
 def test_a_sway_to_the_left_loads_the_left_foot() -> None:
     """A slow moment about x is carried by the loads, half the way apart each, but for what leaning and rubber take."""
     slow = window(TIME, 1.0, 18.0, 5.0)
-    found = respond(PENDULUM, BUSH, np.stack([0 * TIME, 10.0 * slow, 0 * TIME]), flat(), PERIOD)
+    found = respond(
+        PENDULUM, BUSH, np.stack([0 * TIME, 10.0 * slow, 0 * TIME]), flat(), PERIOD, beside=(0.0, 0.0)
+    )
     row = TIME.size // 2
     assert found.load["left"][row] > 0
     assert found.load["left"][row] == pytest.approx(-found.load["right"][row], rel=1e-6)
@@ -82,17 +84,19 @@ def test_with_a_foot_ahead_the_lean_rolls_the_ankles_most_on_soft_feet() -> None
     asked = np.stack([0 * TIME, 2.0 * slow * line[0], 2.0 * slow * line[1]])
     for stiffness in (250.0, 1000.0):
         bush = replace(stiff, stiffness=stiffness)
-        bent = respond(replace(PENDULUM, places=ahead), bush, asked, flat(), PERIOD).deflection["left"]
+        bent = respond(
+            replace(PENDULUM, places=ahead), bush, asked, flat(), PERIOD, beside=(0.0, 0.0)
+        ).deflection["left"]
         lean = 2.0 / (2 * stiffness - weight)
         assert bent[::-1, row] == pytest.approx(lean * line, rel=0.02)
-        beside = respond(PENDULUM, bush, asked, flat(), PERIOD).deflection["left"]
+        beside = respond(PENDULUM, bush, asked, flat(), PERIOD, beside=(0.0, 0.0)).deflection["left"]
         assert np.abs(beside[1]).max() < 1e-3 * np.abs(bent[1]).max()
 
 
 @pytest.mark.parametrize("size", [2.0, -3.0])
 def test_twice_the_motion_is_twice_the_response(size: float) -> None:
     wrench = np.stack([SWAY, SWAY**2, SWAY])
-    one, other = (respond(PENDULUM, BUSH, k * wrench, flat(), PERIOD) for k in (1.0, size))
+    one, other = (respond(PENDULUM, BUSH, k * wrench, flat(), PERIOD, beside=(0.0, 0.0)) for k in (1.0, size))
     assert other.rate["left"] == pytest.approx(size * one.rate["left"])
 
 

@@ -51,7 +51,7 @@ def test_the_fit_is_the_nearest_body(seed: int) -> None:
     assert not is_consistent(target)
     weights = 1 / scale
     regressor = np.diag(weights)
-    found = consistent_fit(Normal.of(regressor, weights * target, prior), prior, 1e-9)
+    found = consistent_fit(Normal.of(regressor, weights * target, prior), prior, 1e-9, positive=())
     expected = nearest(target, weights, cad)
     assert np.linalg.eigvalsh(pseudo_inertia(found))[0] > -1e-7
     distance = [np.linalg.norm(weights * (one - target)) for one in (found, expected)]
@@ -73,6 +73,6 @@ def test_the_solver_is_given_directions_of_one_size(monkeypatch: pytest.MonkeyPa
     regressor = np.diag(np.geomspace(1e-2, 1e4, 10)) @ np.linalg.inv(prior.spread)
     target = regressor @ np.array([-1.0, *cad[1:]])
     monkeypatch.setattr(clarabel, "DefaultSolver", kept)
-    found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-9)
+    found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-9, positive=())
     np.testing.assert_allclose(given, [np.ones(10)], rtol=1e-9)
     assert np.linalg.eigvalsh(pseudo_inertia(found))[0] > -1e-7

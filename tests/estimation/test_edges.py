@@ -179,13 +179,17 @@ def regressed(noise: float, count: int = 100) -> Block:
 
 def test_what_noise_takes_off_is_its_share_and_half_is_too_much() -> None:
     """share / (1 - share) of the value; the offset keeps the mean response."""
-    lost = attenuation([regressed(0.2)], np.array([2.0]))
+    lost = attenuation([regressed(0.2)], np.array([2.0]), shared_offset=False)
     assert lost == pytest.approx([2 * 0.2 / 0.8])
-    assert attenuation([regressed(0.49)], np.array([2.0])) == pytest.approx([2 * 0.49 / 0.51])
-    assert attenuation([regressed(0.51)], np.array([2.0])) is None
+    assert attenuation([regressed(0.49)], np.array([2.0]), shared_offset=False) == pytest.approx(
+        [2 * 0.49 / 0.51]
+    )
+    assert attenuation([regressed(0.51)], np.array([2.0]), shared_offset=False) is None
     other = replace(regressed(0.2), label="b", regressor=regressed(0.2).regressor + 4.0)
     blocks = [regressed(0.2), other]
-    assert offsets_moved(blocks, np.array([0.5])) == pytest.approx({"a": -1.5, "b": -3.5})
+    assert offsets_moved(blocks, np.array([0.5]), shared_offset=False) == pytest.approx(
+        {"a": -1.5, "b": -3.5}
+    )
     assert offsets_moved(blocks, np.array([0.5]), shared_offset=True) == pytest.approx({"a": -2.5, "b": -2.5})
 
 

@@ -143,7 +143,7 @@ def test_what_noise_takes_is_given_back() -> None:
     for seed in range(6):
         blocks = [block(2 * seed, (0.01, 0.08)), block(2 * seed + 1, (0.0, 0.08))]
         fit = fit_linear(blocks)
-        taken = attenuation(blocks, fit.values)
+        taken = attenuation(blocks, fit.values, shared_offset=False)
         assert taken is not None
         errors.append([fit.values / VALUES - 1, (fit.values + taken) / VALUES - 1])
     before, after = np.array(errors).swapaxes(0, 1)
@@ -154,7 +154,7 @@ def test_what_noise_takes_is_given_back() -> None:
 
 def test_nothing_is_given_back_where_nothing_was_taken() -> None:
     clean = block(1, (0.0, 0.0))
-    taken = attenuation([clean], fit_linear([clean]).values)
+    taken = attenuation([clean], fit_linear([clean]).values, shared_offset=False)
     assert taken is not None
     np.testing.assert_allclose(taken, 0.0, atol=1e-6)
 
@@ -178,14 +178,14 @@ def test_offsets_follow_what_is_given_back() -> None:
 
 def test_a_bush_that_does_not_turn_at_all_gets_nothing_back() -> None:
     still = replace(block(1, (0.0, 0.0)), regressor=np.zeros((12000, 2)), noise=np.zeros(2))
-    taken = attenuation([still], fit_linear([still]).values)
+    taken = attenuation([still], fit_linear([still]).values, shared_offset=False)
     assert taken is not None
     assert not taken.any()
 
 
 def test_mostly_noise_is_said() -> None:
     noise = block(1, (0.3, 1.0))
-    assert attenuation([noise], fit_linear([noise]).values) is None
+    assert attenuation([noise], fit_linear([noise]).values, shared_offset=False) is None
 
 
 def gyroscope(log: MotionLog, size: float) -> MotionLog:

@@ -60,6 +60,7 @@ def test_mc_rtc_and_the_observer_are_read_back(feet: dict[str, Any], tmp_path: P
 @pytest.mark.parametrize(
     "text",
     ["nonsense: [", "[1, 2]", '{"flexibilities": [{"jointName": "a", "K": 1}]}', "linStiffness: [1, 2, .nan]",
+     "{linStiffness: [1, 1, 1], angStiffness: [1, 1, .inf], linDamping: [1, 1, 1], angDamping: [1, 1, 1]}",
      '{"flexibilities": [{"jointName": "a", "K": -1, "C": 0, "O": 0}]}'],
 )  # fmt: skip
 def test_a_broken_configuration_is_refused(text: str, tmp_path: Path) -> None:

@@ -47,6 +47,22 @@ def test_each_axis_has_its_own_spring(tmp_path: Path, foot: str) -> None:
 
 
 @pytest.mark.parametrize("foot", FEET)
+def test_what_the_bush_holds_does_not_touch_what_holds_it(tmp_path: Path, foot: str) -> None:
+    model = exported(tmp_path, with_offset=False)
+    groups = {one.get("name"): one for one in model.findall(tag("collision_filter_group"))}
+    group = groups[f"{foot}_bush_filter"]
+    assert {f"{foot}_ankle", f"{foot}_shin"} < {one.text for one in group.findall(tag("member"))}
+    assert group.findtext(tag("ignored_collision_filter_group")) == f"{foot}_bush_filter"
+
+
+@pytest.mark.parametrize("with_offset", [False, True])
+def test_a_tilted_frame_is_told_of(tmp_path: Path, with_offset: bool) -> None:
+    urdf = write_urdf(tmp_path / "rigid.urdf")
+    notes = export(result(urdf), "drake", tmp_path / "out.sdf", with_offset=with_offset)
+    assert any("its frame on the ankle is tilted" in note.text for note in notes) == with_offset
+
+
+@pytest.mark.parametrize("foot", FEET)
 def test_offsets_tilt_the_frame_about_their_own_axes(tmp_path: Path, foot: str) -> None:
     """To where the spring's torque is nothing: -offset over stiffness."""
     plain, tilted = (turn_of(exported(tmp_path, with_offset=each), foot) for each in (False, True))

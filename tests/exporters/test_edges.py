@@ -117,6 +117,8 @@ def test_a_slip_goes_along_where_the_target_holds_one_and_else_the_nearest_sprin
     made, notes = sprung(*SLIPS, result={"laws": [law]})
     assert (made.stiffness, made.damping, made.assumed) == (500.0, 30.0, False)
     assert notes == [f"{left}; K and C are those of the spring and damper nearest to the identified motions"]
+    for at in (0.0, -1.0):  # no slip at all
+        assert sprung(*SLIPS[:2], row("slip_torque", at), SLIPS[3], swing=0.01)[0].stiffness == 400.0
     broken = {**law, "linear_equivalent": {"stiffness": 500.0, "damping": 0.0}}
     assert sprung(*SLIPS, result={"laws": [broken]})[0].stiffness == 400.0
 
@@ -204,6 +206,9 @@ def test_choreonoid_has_means_and_openhrp_each_joint(feet: dict[str, Any], tmp_p
     notes = export(flat, "choreonoid", tmp_path / "flat")
     assert "springT" not in yaml.safe_load((tmp_path / "flat").read_text())["bush"]
     assert any(note.text.startswith("z is not identified: springT and dampingT are left") for note in notes)
+    text, codes = written(feet, "choreonoid", tmp_path, with_offset=True)
+    assert "rests at -offset" not in text, "hinges without a rest position"
+    assert codes["export_offset"] == "warning"
     text, codes = written(feet, "openhrp", tmp_path, with_offset=True)
     config = dict(line.split(": ", 1) for line in text.splitlines() if not line.startswith("#"))
     assert config["robot_model_name"] == "biped"

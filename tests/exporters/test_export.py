@@ -148,7 +148,7 @@ def test_the_joints_that_are_bushes_are_named(target: str, feet: dict[str, Any],
 
 
 def test_positive_is_toes_down_and_left_edge_up(feet: dict[str, Any]) -> None:
-    found, _ = feet_of_result(feet, Path(), with_offset=False)
+    found, _ = feet_of_result(feet, Path(), with_offset=False, hysteresis=False, swing=None)
     for foot in found:
         axes = np.column_stack([foot.direction("roll"), foot.direction("pitch"), foot.direction("z")])
         forward, left, up = axes.T

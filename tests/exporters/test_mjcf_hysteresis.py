@@ -66,6 +66,21 @@ def test_a_bush_slips_in_mujoco_as_its_law_says(step: float, tmp_path: Path) -> 
     assert back == pytest.approx(-(12.0 - TORQUE) / K, rel=0.01)
 
 
+def test_a_models_own_defaults_leave_the_slip_as_it_is(tmp_path: Path) -> None:
+    model = write_mjcf(tmp_path / "robot.xml")
+    own = '<tendon springlength="0.1" damping="9" frictionloss="9" limited="true" range="-1e-3 1e-3"/>'
+    joint = (
+        '<joint ref="0.1" damping="9" stiffness="9" limited="true" range="-1e-3 1e-3" springdamper="1 1"/>'
+    )
+    text = model.read_text().replace("<worldbody>", f"<default>{own}{joint}</default><worldbody>", 1)
+    assert "<default>" in text
+    model.write_text(text)
+    export(slipping(write_urdf(tmp_path / "biped.urdf")), "mjcf", tmp_path / "out.xml", model=model)
+    stuck, slipped = angles(tmp_path / "out.xml", (4.0, 12.0), 0.001)
+    assert stuck == pytest.approx(4.0 / (K + BESIDE), rel=0.01)
+    assert slipped == pytest.approx((12.0 - TORQUE) / K, rel=0.01)
+
+
 def test_a_result_without_slip_takes_it_off_again(tmp_path: Path) -> None:
     urdf, model = write_urdf(tmp_path / "biped.urdf"), write_mjcf(tmp_path / "robot.xml")
     export(slipping(urdf), "mjcf", tmp_path / "one.xml", model=model)

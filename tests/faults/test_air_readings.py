@@ -54,6 +54,17 @@ def test_a_foot_that_stands_has_a_load(robot: RobotModel) -> None:
     assert len(found(robot, wrench, hanging=1.2 * LONG / (SAMPLES * PERIOD))) == 1
 
 
+def test_readings_that_are_missing_say_nothing_of_a_zero(robot: RobotModel) -> None:
+    """A hole parts the time in the air: one side of it is long enough."""
+    off, both = 0.05 * WEIGHT * np.eye(6)[2], np.zeros((SAMPLES, 6))
+    both[:, 2] = WEIGHT
+    left = np.tile(off, (SAMPLES, 1))
+    left[SAMPLES // 4, 4] = np.nan
+    loads = {"left": left[:, 2], "right": both[:, 2]}
+    (told,) = check_air_readings(robot, PERIOD, loads, {"left": left, "right": both})
+    assert "wrench.left.force.z" in told.text
+
+
 def test_a_foot_zeroed_under_load_is_not_in_the_air(robot: RobotModel) -> None:
     left = replace(robot.feet["left"], contact="always")
     zeroed = replace(robot, feet={**robot.feet, "left": left})

@@ -115,7 +115,10 @@ def test_one_axis_that_differs_alone_says_nothing_of_the_others(
     monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: next(told))
     robot = SimpleNamespace(uncertainty=Uncertainty(between_recordings=0.002))
     ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
-    feet = [FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, ()) for foot in FEET]  # type: ignore[arg-type, dict-item]
+    feet = [
+        FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, (), elsewhere=None)
+        for foot in FEET
+    ]  # type: ignore[arg-type, dict-item]
     found = between_all(feet)
     assert found.others == 1
     assert (found.shown is not None) == share
@@ -131,7 +134,10 @@ def test_differences_that_hardly_show_are_none_of_a_robot_that_is_what_its_file_
     monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: alike)
     robot = SimpleNamespace(uncertainty=EXACT if exact else Uncertainty())
     ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
-    feet = [FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, ()) for foot in FEET]  # type: ignore[arg-type, dict-item]
+    feet = [
+        FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, (), elsewhere=None)
+        for foot in FEET
+    ]  # type: ignore[arg-type, dict-item]
     found = between_all(feet)
     assert found.shown is None
     assert found.share < 0.001 if exact else found.share > 0.003

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from biped import TRUTH, VERTICAL, record, sway
 from biped_robot import FEET, Frame, Mounting, make_robot
-from feet_trials import AXES, EXACT, LINEAR, PUNCTUAL, assert_truth, noisy, rotational
+from feet_trials import AXES, EXACT, LINEAR, PUNCTUAL, assert_truth, biased, noisy, rotational
 from plantar.errors import DataError
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
@@ -136,30 +135,6 @@ def test_equation_7_order_and_company_do_not_matter(robot: RobotModel, logs: lis
     twin = MotionLog("again", spoiled[0].time + 60.0, again)
     once, twice = (identify_feet(robot, each, settings=LINEAR) for each in (spoiled[:1], [spoiled[0], twin]))
     np.testing.assert_allclose(rotational(once), rotational(twice), rtol=1e-3)
-
-
-def biased(name: str, seed: int, shift: float) -> MotionLog:
-    truth = {key: replace(law, offset=law.offset + shift) for key, law in TRUTH.items()}
-    return record(sway(name, seed=seed, truth=truth))
-
-
-def test_each_motion_has_its_own_offset_unless_shared(robot: RobotModel) -> None:
-    recordings = [biased("low", 1, -2.0), biased("high", 2, 3.0)]
-    own, low = (identify_feet(robot, each, settings=LINEAR) for each in (recordings, recordings[:1]))
-    np.testing.assert_allclose(rotational(own), rotational(low), rtol=EXACT)
-    values = {(row.foot, row.axis, row.motion): row.value for row in own.offsets}
-    for (foot, axis), law in TRUTH.items():
-        assert values[foot, axis, "low"] == pytest.approx(law.offset - 2.0, abs=1e-3)
-        assert values[foot, axis, "high"] == pytest.approx(law.offset + 3.0, abs=1e-3)
-    shared = identify_feet(robot, recordings, settings=replace(LINEAR, offset="shared"))
-    assert np.abs(rotational(shared) / rotational(own) - 1).max() > 0.003, "one offset for two biases costs"
-    for foot in FEET:
-        for axis in AXES:
-            assert len({row.value for row in shared.offsets if (row.foot, row.axis) == (foot, axis)}) == 1
-    errors = [
-        sum(row.mean_abs_error for row in found.validation if row.kind == "direct") for found in (own, shared)
-    ]
-    assert errors[1] > errors[0] + 1.0
 
 
 def test_an_unseen_motions_offset_comes_from_its_first_second(

@@ -115,7 +115,7 @@ def test_a_log_is_let_go_once_it_is_checked(robot: RobotModel, logs: list[Motion
             yield log
             del log
 
-    found = checked_in_turn(robot, read())
+    found = checked_in_turn(robot, read(), meanwhile=None)
     assert [one.name for one in found] == [f"log {place}" for place in range(4)]
 
 
@@ -127,11 +127,11 @@ def test_the_first_log_with_an_error_is_named(robot: RobotModel, logs: list[Moti
         return replace(logs[0].with_columns(moved), name=name)
 
     with pytest.raises(DataError, match="second"):
-        checked_in_turn(robot, [logs[0], degrees("second"), degrees("third"), logs[1]])
+        checked_in_turn(robot, [logs[0], degrees("second"), degrees("third"), logs[1]], meanwhile=None)
     with pytest.raises(LogError, match="does not exist"):
-        checked_in_turn(robot, logs_of([logs[0], "nowhere.csv", degrees("third")], robot))
+        checked_in_turn(robot, logs_of([logs[0], "nowhere.csv", degrees("third")], robot), meanwhile=None)
     with pytest.raises(DataError, match="second"):
-        checked_in_turn(robot, logs_of([logs[0], degrees("second"), "nowhere.csv"], robot))
+        checked_in_turn(robot, logs_of([logs[0], degrees("second"), "nowhere.csv"], robot), meanwhile=None)
 
 
 def test_the_logs_to_fit_alone_choose_the_filter(

@@ -57,7 +57,15 @@ def test_feet_that_are_no_biped_s_are_refused(robot: RobotModel, count: int, tol
     with pytest.raises(RobotError, match=told):
         checked(other, record(sway(duration=2.0)))
     with pytest.raises(RobotError, match=told):
-        estimator_model(other, cutoff=5.0, wrench_delay=(0.0, 0.0), elements={}, compliance={})
+        estimator_model(
+            other,
+            cutoff=5.0,
+            wrench_delay=(0.0, 0.0),
+            elements={},
+            compliance={},
+            linear=(),
+            misplaced={},
+        )
 
 
 def test_an_accelerometer_that_drivers_fill_with_zeros_is_no_accelerometer(robot: RobotModel) -> None:

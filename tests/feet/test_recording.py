@@ -10,7 +10,7 @@ import pytest
 from biped import record, sway
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording, moment_arm_effect, moved_centre
-from plantar.feet.regression.load_torque import moment_columns
+from plantar.feet.regression.load_torque import ALL, moment_columns
 from plantar.feet.regression.regression_data import blocks_of
 from plantar.robot.model import RobotModel
 
@@ -63,8 +63,8 @@ def test_a_fit_reads_the_same_rows_of_a_decimated_recording(robot: RobotModel) -
     assert few.period == pytest.approx(whole.period)
     rows = standing.rows("left")
     for of_whole, of_few in zip(
-        moment_columns(standing, "left", "pitch")[rows].T,
-        moment_columns(thin, "left", "pitch")[thin.rows("left")].T,
+        moment_columns(standing, "left", "pitch", rows=ALL)[rows].T,
+        moment_columns(thin, "left", "pitch", rows=ALL)[thin.rows("left")].T,
         strict=True,
     ):
         assert np.abs(of_few - of_whole).max() < 0.01 * np.ptp(of_whole)

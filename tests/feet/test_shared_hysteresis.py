@@ -55,7 +55,7 @@ def foot(fit: AxisFit, recordings: list[Recording], *, steps: bool = False) -> F
     if steps:
         recordings = [replace(recording, stances={FOOT: STEPPING}) for recording in recordings]
     ready: Any = SimpleNamespace(fitted=recordings, settings=FeetSettings())
-    return FittedFoot(FOOT, None, {"pitch": fit}, {}, ready, ready, ())  # type: ignore[arg-type]
+    return FittedFoot(FOOT, None, {"pitch": fit}, {}, ready, ready, (), elsewhere=None)  # type: ignore[arg-type]
 
 
 def test_a_memory_that_another_axis_shows_is_taken(
@@ -234,7 +234,7 @@ def test_where_the_other_axis_bends_the_rubber_and_shows_no_memory_small_motions
     corners = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
     robot = SimpleNamespace(feet={FOOT: SimpleNamespace(sole=SimpleNamespace(polygon=corners))})
     ready: Any = SimpleNamespace(fitted=[], settings=FeetSettings(), robot=robot)
-    one = FittedFoot(FOOT, None, {axis: small, other: wide}, {}, ready, ready, ())  # type: ignore[arg-type]
+    one = FittedFoot(FOOT, None, {axis: small, other: wide}, {}, ready, ready, (), elsewhere=None)  # type: ignore[arg-type]
     found = with_shared_hysteresis({"one": one})["one"].fits[axis]
     assert found.choice is not None
     assert (found.choice.caution is None) == dropped

@@ -56,7 +56,9 @@ def test_a_foot_that_cannot_be_scored_is_named_with_the_reasons(robot: RobotMode
     lifted = {name: 0.0 * values for name, values in log.columns.items() if name.startswith("wrench.right")}
     held = {name: values + log.columns[name.replace("left", "right")] for name, values in log.columns.items()
             if name == "wrench.left.force.z"}  # fmt: skip
-    rows, notes = scored_feet(found, robot, [log, replace(log.with_columns(lifted | held), name="c")])
+    rows, notes = scored_feet(
+        found, robot, [log, replace(log.with_columns(lifted | held), name="c")], progress=lambda _: None
+    )
     assert {(row.motion, row.foot) for row in rows} >= {("b", "left"), ("b", "right")}
     told = [note.text for note in notes if "the right foot is not scored" in note.text]
     assert len(told) == 1
@@ -116,7 +118,7 @@ def test_a_log_that_was_fitted_is_no_unseen_one(robot: RobotModel, name: str, to
     log = replace(record(sway("a", 1, duration=8.0)), sha256="1" * 64)
     found = identify_feet(robot, [log], settings=LINEAR)
     given = replace(log, name=name, sha256="2" * 64 if name == "b" else log.sha256)
-    _, notes = scored_feet(found, robot, [given])
+    _, notes = scored_feet(found, robot, [given], progress=lambda _: None)
     assert [note.text.split(":")[0] for note in notes if note.code == "seen"] == [name] * told
 
 
@@ -125,7 +127,7 @@ def test_a_result_of_another_robot_is_told(robot: RobotModel) -> None:
     log = record(sway("a", duration=12.0))
     found = identify_feet(robot, [log], settings=LINEAR)
     for name, told in ((robot.name, False), ("another", True)):
-        _, notes = scored_feet(replace(found, robot=name), robot, [log])
+        _, notes = scored_feet(replace(found, robot=name), robot, [log], progress=lambda _: None)
         texts = [note.text for note in notes if note.code == "other_robot"]
         assert bool(texts) == told
         assert all(f"the result is of 'another', the robot file of '{robot.name}'" in text for text in texts)

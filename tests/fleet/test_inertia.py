@@ -53,7 +53,9 @@ def assert_same(found: DynamicsResult, alone: DynamicsResult) -> None:
 
 @pytest.mark.parametrize("count", [1, LOGS])
 def test_the_sum_of_factors_is_what_one_process_finds(client: Any, folder: Path, count: int) -> None:
-    found = inertia_over(client, str(folder / "biped.yaml"), logs(folder)[:count])
+    found = inertia_over(
+        client, str(folder / "biped.yaml"), logs(folder)[:count], settings=None, progress=lambda _: None
+    )
     assert len(found.inputs) == count
     assert_same(found, identify_inertia(folder / "biped.yaml", logs(folder)[:count]))
 
@@ -61,12 +63,20 @@ def test_the_sum_of_factors_is_what_one_process_finds(client: Any, folder: Path,
 def test_a_broken_log_is_told_and_left_out(client: Any, folder: Path) -> None:
     broken = folder / "broken.parquet"
     broken.write_bytes(b"PAR1")
-    found = inertia_over(client, str(folder / "biped.yaml"), [str(broken), *logs(folder)[:2]])
+    found = inertia_over(
+        client,
+        str(folder / "biped.yaml"),
+        [str(broken), *logs(folder)[:2]],
+        settings=None,
+        progress=lambda _: None,
+    )
     assert [Path(entry.path).name for entry in found.inputs] == ["log_0.parquet", "log_1.parquet"]
     (note,) = (note for note in found.notes if note.code == "log_left_out")
     assert note.text.startswith(f"{broken}: is not a readable Parquet file")
     with pytest.raises(DataError, match="none of the first 1 logs can be used"):
-        inertia_over(client, str(folder / "biped.yaml"), [str(broken)])
+        inertia_over(
+            client, str(folder / "biped.yaml"), [str(broken)], settings=None, progress=lambda _: None
+        )
 
 
 def test_the_command_writes_what_identify_inertia_writes(
@@ -86,6 +96,6 @@ def test_the_command_writes_what_identify_inertia_writes(
 def test_what_cannot_be_is_refused(client: Any, folder: Path) -> None:
     (folder / "arm.yaml").write_text("name: arm\nurdf: biped.urdf\nbase: fixed\n")
     with pytest.raises(RobotError, match="a fixed base"):
-        inertia_over(client, str(folder / "arm.yaml"), logs(folder))
+        inertia_over(client, str(folder / "arm.yaml"), logs(folder), settings=None, progress=lambda _: None)
     with pytest.raises(DataError, match="no logs"):
-        inertia_over(client, str(folder / "biped.yaml"), [])
+        inertia_over(client, str(folder / "biped.yaml"), [], settings=None, progress=lambda _: None)

@@ -225,7 +225,11 @@ def test_what_another_machine_could_do_is_tried_again(tmp_path: Path) -> None:
 def test_a_robot_file_that_changes_meanwhile_is_told(tmp_path: Path) -> None:
     group = read_manifest(small_fleet(tmp_path, 1))[0]
     task = Task(
-        replace(robot_at(group.robot), sha256="0"), group.logs, SETTINGS, Store(str(tmp_path / "out"))
+        replace(robot_at(group.robot), sha256="0"),
+        group.logs,
+        SETTINGS,
+        Store(str(tmp_path / "out")),
+        memory=None,
     )
     with pytest.raises(PlantarError, match="changed while the fleet was running"):
         compute(task)

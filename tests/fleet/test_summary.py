@@ -13,7 +13,7 @@ from plantar.errors import SettingsError
 from plantar.fleet.alarms import Alarm
 from plantar.fleet.series import Series, SeriesKey, by_day, series_of
 from plantar.fleet.statistics.random_effects import Mean
-from plantar.fleet.summary import FleetSummary, _advised, _with_shared, reasons_of, summary_of
+from plantar.fleet.summary import FALSE_ALARMS, FleetSummary, _advised, _with_shared, reasons_of, summary_of
 from plantar.fleet.tables import GroupRow
 from plantar.report.fleet import fleet_page
 
@@ -90,8 +90,8 @@ def test_the_page_shows_alarms_first_and_escapes_names(summary: FleetSummary) ->
 
 
 def test_a_page_of_nothing_is_a_page() -> None:
-    empty = summary_of(results([]), failures())
-    assert "None." in fleet_page(empty)
+    empty = summary_of(results([]), failures(), false_alarms=FALSE_ALARMS)
+    assert "None." in fleet_page(empty, groups=(), run=None)
 
 
 def test_only_usable_positive_values_count() -> None:
@@ -139,7 +139,7 @@ def test_effects_are_told_in_percent() -> None:
             for _ in range(3):
                 value = 400 * np.exp(mine + 0.005 * random.normal())
                 rows.append(row(f"u{unit}", day, "left", "pitch", value))
-    (effect,) = summary_of(results(rows), failures()).effects
+    (effect,) = summary_of(results(rows), failures(), false_alarms=FALSE_ALARMS).effects
     assert (effect.units, effect.recordings) == (20, 600)
     assert effect.recordings_percent == pytest.approx(0.5, rel=0.15)
     assert effect.days_percent == pytest.approx(1.0, rel=0.2)

@@ -91,12 +91,12 @@ def test_logs_read_in_turn_fit_beside_what_is_kept_of_those_before(tmp_path: Pat
     for path in paths:
         path.write_text("time,joint.knee.position\n" + "".join(f"{0.01 * k:g},0\n" for k in range(100)))
     size = open_log(paths[0]).size
-    few = open_in_turn(paths, None, lambda log: log.size // 5, 2 * size)  # type: ignore[arg-type]
+    few = open_in_turn(paths, None, lambda log: log.size // 5, 2 * size, ahead={})  # type: ignore[arg-type]
     assert [log.name for log in few] == ["one", "two", "three"]
     with pytest.raises(NoRoom, match=r"two.csv: does not fit beside the other logs, which leave 800 bytes"):
-        list(open_in_turn(paths, None, lambda log: log.size, size + 800))  # type: ignore[arg-type]
+        list(open_in_turn(paths, None, lambda log: log.size, size + 800, ahead={}))  # type: ignore[arg-type]
     with pytest.raises(NoRoom, match=r"one.csv: holds 100 rows"):
-        list(open_in_turn(paths, None, lambda log: log.size, size - 1))  # type: ignore[arg-type]
+        list(open_in_turn(paths, None, lambda log: log.size, size - 1, ahead={}))  # type: ignore[arg-type]
 
 
 def table(path: Path, joint: str = "knee", rows: int = 100) -> Path:
@@ -113,7 +113,7 @@ def test_tables_that_are_read_ahead_are_read_no_second_time(tmp_path: Path) -> N
     assert {*ahead} == {first, last}
     for path in (first, last):
         path.unlink()
-    turns = iter(open_in_turn([first, broken, last], robot, len, ahead=ahead))
+    turns = iter(open_in_turn([first, broken, last], robot, len, ahead=ahead, memory=None))
     log = next(turns)
     assert (log.name, [*log.columns]) == ("a", ["joint.left_ankle_roll.position"])
     with pytest.raises(LogError, match=r"joint\.knee\.position"):
@@ -124,7 +124,7 @@ def test_logs_that_the_robot_file_maps_are_not_taken_from_those_before(tmp_path:
     path = table(tmp_path / "one.csv")
     columns = {"time": "time", "joint.left_ankle_roll.position": "joint.knee.position"}
     robot = make_robot(tmp_path, columns=columns)
-    found = next(iter(open_in_turn([path], robot, len, ahead=read_ahead([path]))))
+    found = next(iter(open_in_turn([path], robot, len, ahead=read_ahead([path]), memory=None)))
     assert "joint.left_ankle_roll.position" in found.columns
 
 

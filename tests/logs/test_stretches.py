@@ -14,6 +14,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.save import save_log
 from plantar.logs.stretches import Stretches, most_moving
+from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import evenly_sampled, sampling
 from plantar.signals.thinning import thinned
@@ -36,6 +37,7 @@ def long_log(seconds: float = 1800.0, rate: float = 20.0, **torques: Array) -> M
 
 
 TIME = np.arange(0.0, 1800.0, 0.05)
+GAP = Note("gap", "info", "0.2 s missing")
 
 
 def starts_of(log: MotionLog) -> set[int]:
@@ -108,10 +110,17 @@ def test_a_clock_in_other_units_is_left_to_those_who_tell_it(unit: float) -> Non
 
 @pytest.mark.parametrize("foot", ["left", "foot.left"])
 def test_other_sensors_do_not_choose(foot: str) -> None:
+    """Twelve fingers, each with a stretch of its own, of the ten that there are."""
     own = {f"wrench.{foot}.torque.x": moving(TIME, [(300.0, 420.0)], 0.5)}
-    hands = {f"wrench.hand.torque.{axis}": moving(TIME, [(900.0, 1800.0)], 1.0, 50.0) for axis in "xyz"}
-    found = most_moving(MotionLog("long", TIME + 5.0, {**hands, **own}), {foot})
+    moves = [(900.0 + 60.0 * finger, 960.0 + 60.0 * finger) for finger in range(12)]
+    fingers = {
+        f"wrench.finger_{place}.torque.y": moving(TIME, [one], 1.0, 50.0) for place, one in enumerate(moves)
+    }
+    log = MotionLog("long", TIME + 5.0, {**fingers, **own}, notes=(GAP,))
+    found = most_moving(log, {foot})
     assert {5, 6} <= starts_of(found)
+    assert found.notes[0] == GAP, "what was said of the log stays said"
+    assert not {5, 6} & starts_of(most_moving(log))
 
 
 def test_a_spike_is_no_motion() -> None:

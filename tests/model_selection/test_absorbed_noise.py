@@ -30,7 +30,7 @@ def recorded(rng: np.random.Generator, size: float, duration: float) -> DataSet:
 
 def prepared_of(sizes: list[float], duration: float) -> list[FilteredDataSet]:
     rng = np.random.default_rng(4)
-    return prepare_data_sets([recorded(rng, size, duration) for size in sizes], 5.0)
+    return prepare_data_sets([recorded(rng, size, duration) for size in sizes], 5.0, drift=True)
 
 
 def tangent(prepared: list[FilteredDataSet]) -> tuple[Linearised, np.ndarray]:
@@ -108,7 +108,7 @@ def test_deviations_of_a_fit_hold_what_an_attitude_wanders_by() -> None:
             walk = 1e-5 * np.cumsum(rng.standard_normal(len(clean.torque)))
             motion = replace(clean.motion, deflection=clean.motion.deflection + walk)
             data_sets.append(replace(clean, motion=motion))
-        fit = fit_model(Elastoplastic(), data_sets)
+        fit = fit_model(Elastoplastic(), data_sets, shared_offset=False)
         errors = [fit.values[2] - RUBBER.slip_torque, fit.shape[0] - RUBBER.slip_angle]
         told.append(np.array(errors) / fit.std[2:])
     rms = np.sqrt(np.mean(np.square(told), axis=0))
@@ -128,9 +128,9 @@ def test_steps_lack_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         replace(each, steps=StepColumns(stance, np.zeros((len(stance), 0)), 1.0))
         for each, stance in zip(stands, none, strict=True)
     ]
-    fit_model(Elastoplastic(), steps)
+    fit_model(Elastoplastic(), steps, shared_offset=False)
     assert not asked
-    fit_model(Elastoplastic(), stands)
+    fit_model(Elastoplastic(), stands, shared_offset=False)
     assert asked
 
 

@@ -28,7 +28,7 @@ LEAST_GAIN = 0.1
 
 @pytest.fixture(scope="module")
 def fit() -> ModelFit:
-    return fit_model(KelvinVoigt(), campaign(0, Rubber())[:1])
+    return fit_model(KelvinVoigt(), campaign(0, Rubber())[:1], shared_offset=False)
 
 
 def contest(
@@ -124,7 +124,9 @@ def test_an_added_term_must_be_told_from_zero(
 
 def prepared(count: int) -> list[FilteredDataSet]:
     return prepare_data_sets(
-        [replace(one, label=str(k)) for k, one in enumerate(campaign(0, Rubber())[:1] * count)], 5.0
+        [replace(one, label=str(k)) for k, one in enumerate(campaign(0, Rubber())[:1] * count)],
+        5.0,
+        drift=True,
     )
 
 

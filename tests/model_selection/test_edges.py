@@ -18,7 +18,7 @@ from plantar.models import BushMotion, Elastoplastic, Hardening, KelvinVoigt
 
 @pytest.fixture(scope="module")
 def fit() -> ModelFit:
-    return fit_model(KelvinVoigt(), campaign(0, Rubber())[:1])
+    return fit_model(KelvinVoigt(), campaign(0, Rubber())[:1], shared_offset=False)
 
 
 def moved(*squares: float) -> list[SimpleNamespace]:

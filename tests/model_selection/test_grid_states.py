@@ -10,7 +10,7 @@ import pytest
 
 from bush_data_sets import Rubber, campaign
 from plantar.model_selection.data_sets import prepare_data_sets
-from plantar.model_selection.grid import Fits, Pieces, fit_pieces
+from plantar.model_selection.grid import Fits, Pieces, fit_pieces, held_out_squares
 from plantar.models import Elastoplastic
 
 RUNS, CANDIDATES, STATES, ROWS = 4, 8, 3, 40
@@ -32,7 +32,7 @@ def problem(better: np.ndarray, shift: float) -> np.ndarray:
 def fitted(rows: np.ndarray, data_set: np.ndarray, begin: np.ndarray | None = None) -> Fits:
     grams = np.einsum("rgcni,rgcnj->rgcij", rows, rows)
     pieces: Any = SimpleNamespace(grams=grams, data_set=data_set, run=np.arange(RUNS), size=len(VALUES))
-    return fit_pieces(pieces, np.ones(RUNS, dtype=bool), begin=begin)
+    return fit_pieces(pieces, np.ones(RUNS, dtype=bool), begin=begin, shared_offset=False)
 
 
 @pytest.mark.parametrize("better", [[0, 2, 1, 0], [2, 2, 2, 2]])
@@ -93,7 +93,7 @@ def test_values_offsets_and_squares_are_those_of_the_chosen_rows() -> None:
 
 
 def test_states_are_tried_over_all_their_range_or_closely_about_known_ones() -> None:
-    model, prepared = Elastoplastic(), prepare_data_sets(campaign(0, Rubber())[:1], 5.0)
+    model, prepared = Elastoplastic(), prepare_data_sets(campaign(0, Rubber())[:1], 5.0, drift=True)
     folds, shape = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared], np.array([[0.01]])
     runs = len(prepared[0].motion.runs)
     (everywhere,) = Pieces.of(model, prepared, folds, shape).initial_states
@@ -101,3 +101,15 @@ def test_states_are_tried_over_all_their_range_or_closely_about_known_ones() -> 
     for run in range(runs):
         assert everywhere[:, run] == pytest.approx([-0.9, -0.45, 0.0, 0.45, 0.9])
         assert nearby[:, run] == pytest.approx([0.72, 0.81, 0.9, 0.99, 1.0])
+
+
+@pytest.mark.parametrize("fades", [True, False])
+def test_a_held_out_run_begins_in_its_best_state_where_the_first_one_fades(fades: bool) -> None:
+    """Else it begins where the fit says: of a law without memory states are no choice."""
+    grams = np.zeros((2, 1, STATES, 3, 3))
+    grams[0, 0, :, 2, 2], grams[1, 0, :, 2, 2] = [5.0, 2.0, 3.0], [1.0, 8.0, 9.0]  # of the response alone
+    model = SimpleNamespace(fading_memory=fades)
+    pieces: Any = SimpleNamespace(grams=grams, data_set=np.array([0, 0]), model=model)
+    fits = Fits(np.zeros((1, 1)), np.zeros((1, 1)), np.array([[0], [2]]), np.zeros(1))
+    found = held_out_squares(pieces, fits, np.array([True, True]), 0, whole=False)
+    assert found.tolist() == ([2.0, 1.0] if fades else [5.0, 9.0])

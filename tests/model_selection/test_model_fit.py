@@ -77,7 +77,7 @@ def test_a_law_recovers_its_own_parameters(name: str) -> None:
         used = np.ones(len(moved), dtype=bool)
         used[:60] = used[-60:] = False
         data_sets.append(DataSet(label, motion, torque, used))
-    fit = fit_model(model, data_sets)
+    fit = fit_model(model, data_sets, shared_offset=False)
     np.testing.assert_allclose(fit.values[:2], values[:2], rtol=5e-3)  # paths are thinned out
     np.testing.assert_allclose(fit.values[2:], values[2:], rtol=0.01)
     np.testing.assert_allclose(fit.shape, shape, rtol=0.02)
@@ -110,7 +110,7 @@ def test_an_element_is_told_by_its_torque_or_by_how_stiff_it_is_before_it_slips(
 
 def test_kelvin_voigt_is_plain_least_squares() -> None:
     data_sets = campaign(1, Rubber())
-    fit = fit_model(KelvinVoigt(), data_sets)
+    fit = fit_model(KelvinVoigt(), data_sets, shared_offset=False)
     rows, right, places = [], [], []
     for place, data_set in enumerate(data_sets):
         filtered = low_pass(
@@ -172,7 +172,7 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
 def test_intervals_hold_the_truth(model: MODELS, rubber: Rubber) -> None:  # type: ignore[valid-type]
     inside, seeds = np.zeros(2), 4 if model.name == "bouc_wen" else 12
     for seed in range(seeds):
-        fit = fit_model(model, campaign(seed, rubber))
+        fit = fit_model(model, campaign(seed, rubber), shared_offset=False)
         for place, truth in enumerate((rubber.stiffness, rubber.damping)):
             low, high = fit.interval95(fit.names[place])
             inside[place] += low <= truth <= high
@@ -195,7 +195,10 @@ def test_gaps_and_unused_samples_change_little() -> None:
         used[1300 + 100 * place : 1760 + 100 * place] = False
         used[2300:2710] = False
         holed.append(DataSet(data_set.label, replace(data_set.motion, deflection=deflection), torque, used))
-    whole, parted = fit_model(Elastoplastic(), data_sets), fit_model(Elastoplastic(), holed)
+    whole, parted = (
+        fit_model(Elastoplastic(), data_sets, shared_offset=False),
+        fit_model(Elastoplastic(), holed, shared_offset=False),
+    )
     assert all(len(initial_states) == 3 for initial_states in parted.initial_states.values())
     assert all(np.isfinite(residual).all() for residual in parted.residuals.values())
     assert error_percent(parted, JENKINS)[0] < 0.5
@@ -210,11 +213,13 @@ def test_a_start_that_is_not_virgin_is_found() -> None:
     motion = BushMotion(path, np.gradient(path, PERIOD), PERIOD)
     torque = model.columns(motion, [0.01], np.array([-0.7])) @ [434.0, 15.89, 5.0] + 1.5
     strained = DataSet("strained", motion, torque, np.ones(len(path), dtype=bool))
-    fit = fit_model(model, [*data_sets, strained])
+    fit = fit_model(model, [*data_sets, strained], shared_offset=False)
     assert fit.initial_states["strained"] == pytest.approx([-0.7], abs=0.05)
     assert fit.offsets["strained"] == pytest.approx(1.5, abs=0.2)
     first = np.arange(len(path)) < 200
-    predicted, offset, initial_states = opened(fit_model(model, data_sets), strained, first)
+    predicted, offset, initial_states = opened(
+        fit_model(model, data_sets, shared_offset=False), strained, first
+    )
     assert initial_states == pytest.approx([-0.7], abs=0.1)
     assert offset == pytest.approx(1.5, abs=0.5)
     assert np.abs(predicted - torque)[200:-200].mean() < 0.2
@@ -225,13 +230,13 @@ def test_a_shared_offset_is_one_number() -> None:
     fit = fit_model(Elastoplastic(), data_sets, shared_offset=True)
     assert len(set(fit.offsets.values())) == 1
     assert error_percent(fit, JENKINS)[0] < 0.2
-    choice = choose_model(data_sets, shared_offset=True)
+    choice = choose_model(data_sets, shared_offset=True, before=None)
     assert choice.fit.model.name == "elastoplastic"
 
 
 def test_reconstruction_is_the_fit_plus_its_residual() -> None:
     data_sets = campaign(6, JENKINS)
-    fit = fit_model(Elastoplastic(), data_sets)
+    fit = fit_model(Elastoplastic(), data_sets, shared_offset=False)
     for data_set in data_sets:
         motion, torque = filtered(data_set, fit.cutoff)
         missed = (torque - reconstructed(fit, motion, fit.initial_states[data_set.label]))[data_set.used]
@@ -245,9 +250,9 @@ def test_nothing_to_fit_is_one_line() -> None:
     data_set = campaign(0, Rubber())[0]
     unused = replace(data_set, used=np.zeros_like(data_set.used))
     with pytest.raises(DataError, match="no recording has a sample"):
-        fit_model(KelvinVoigt(), [unused])
+        fit_model(KelvinVoigt(), [unused], shared_offset=False)
     with pytest.raises(DataError, match="no recording has a sample"):
-        choose_model([unused])
+        choose_model([unused], shared_offset=False, before=None)
 
 
 def test_wrong_starts_do_not_trap_the_refinement() -> None:
@@ -263,7 +268,7 @@ def test_wrong_starts_do_not_trap_the_refinement() -> None:
         used = np.ones(len(path), dtype=bool)
         used[:60] = used[-60:] = False
         data_sets.append(DataSet(f"trial_{place}", motion, torque, used))
-    prepared = prepare_data_sets(data_sets, 5.0)
+    prepared = prepare_data_sets(data_sets, 5.0, drift=True)
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
     pieces = Pieces.of(model, prepared, folds, np.array([[0.009], [0.0125]]), [np.ones(1)] * 4)
     problem = Problem(model, prepared, False)
@@ -279,7 +284,9 @@ def test_wrong_starts_do_not_trap_the_refinement() -> None:
 def test_a_bush_that_never_moves_says_nothing() -> None:
     still = BushMotion(np.zeros(2000), np.zeros(2000), PERIOD)
     noise = np.random.default_rng(0).standard_normal(2000)
-    choice = choose_model([DataSet("still", still, noise, np.ones(2000, dtype=bool))])
+    choice = choose_model(
+        [DataSet("still", still, noise, np.ones(2000, dtype=bool))], shared_offset=False, before=None
+    )
     assert choice.fit.model.name == "kelvin_voigt"
     assert choice.reach == 0
     assert choice.caution is None
@@ -295,7 +302,7 @@ def test_many_short_runs_each_have_their_own_start() -> None:
         data_sets.append(
             DataSet(data_set.label, replace(data_set.motion, deflection=deflection), data_set.torque, used)
         )
-    fit = fit_model(Elastoplastic(), data_sets)
+    fit = fit_model(Elastoplastic(), data_sets, shared_offset=False)
     # The last run, of a third of a second, is filtered like any other.
     assert all(len(initial_states) == 27 for initial_states in fit.initial_states.values())
     assert error_percent(fit, JENKINS)[0] < 1

@@ -32,7 +32,7 @@ def test_hysteresis_is_chosen_and_spring_and_damper_come_back(seed: int) -> None
     plain = largest_torque(campaign(seed, Rubber()))
     rubber = Rubber(slip_torque=share * plain, slip_angle=slip_angle)
     data_sets = campaign(seed, rubber)
-    choice = choose_model(data_sets)
+    choice = choose_model(data_sets, shared_offset=False, before=None)
     assert choice.fit.model.name in ("elastoplastic", "iwan", "bouc_wen")
     stiffness, damping = error_percent(choice.fit, rubber)
     assert stiffness < 1
@@ -45,7 +45,7 @@ def test_hysteresis_is_chosen_and_spring_and_damper_come_back(seed: int) -> None
 
 @pytest.mark.parametrize("seed", range(4))
 def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
-    choice = choose_model(campaign(seed, Rubber()))
+    choice = choose_model(campaign(seed, Rubber()), shared_offset=False, before=None)
     assert choice.fit.model.name == "kelvin_voigt"
     assert choice.fit is choice.equivalent
     assert choice.caution is None
@@ -64,7 +64,7 @@ def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
     ],
 )
 def test_the_law_that_made_the_data_is_chosen(rubber: Rubber, name: str) -> None:
-    choice = choose_model(campaign(3, rubber))
+    choice = choose_model(campaign(3, rubber), shared_offset=False, before=None)
     assert choice.fit.model.name == name
     stiffness, damping = error_percent(choice.fit, rubber)
     assert stiffness < 1
@@ -76,9 +76,9 @@ def test_small_motions_never_give_a_confident_wrong_spring() -> None:
     rng = np.random.default_rng(0)
     paths = [sway(rng, 0.0035, 0.5), sway(rng, 0.003, 0.8), tilt(rng, 0.003)]
     data_sets = [recorded(rng, f"small_{i}", path, JENKINS) for i, path in enumerate(paths)]
-    fit = fit_model(Elastoplastic(), data_sets)
+    fit = fit_model(Elastoplastic(), data_sets, shared_offset=False)
     assert fit.doubts or not fit.model.possible(fit.values)
-    choice = choose_model(data_sets)
+    choice = choose_model(data_sets, shared_offset=False, before=None)
     assert choice.fit.model.name == "kelvin_voigt"
     both = JENKINS.stiffness + JENKINS.slip_torque / JENKINS.slip_angle
     assert choice.fit.value("stiffness") == pytest.approx(both, rel=0.03)
@@ -89,7 +89,11 @@ def test_motions_that_just_slip_show_the_spring_behind() -> None:
     """The element slips in the widest turns alone: spring and damper would come out twice as stiff."""
     rng = np.random.default_rng(0)
     paths = [sway(rng, 0.0095, 0.5), sway(rng, 0.007, 0.8), tilt(rng, 0.0095)]
-    choice = choose_model([recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)])
+    choice = choose_model(
+        [recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)],
+        shared_offset=False,
+        before=None,
+    )
     assert choice.fit.model.name == "elastoplastic"
     low, high = choice.fit.interval95("stiffness")
     assert low < JENKINS.stiffness < high < 1.3 * JENKINS.stiffness
@@ -99,7 +103,11 @@ def test_motions_that_just_slip_show_the_spring_behind() -> None:
 def test_an_element_that_hardly_slips_must_gain_much() -> None:
     rng = np.random.default_rng(0)
     paths = [sway(rng, 0.0085, 0.5), sway(rng, 0.006, 0.8), tilt(rng, 0.0085)]
-    choice = choose_model([recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)])
+    choice = choose_model(
+        [recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)],
+        shared_offset=False,
+        before=None,
+    )
     assert choice.fit.model.name == "kelvin_voigt"
     hardly = next(score for score in choice.ranking if score.model.name == "elastoplastic")
     assert hardly.refused is not None
@@ -109,10 +117,10 @@ def test_an_element_that_hardly_slips_must_gain_much() -> None:
 def test_whole_recordings_are_held_out_where_they_can_stand_for_one_another() -> None:
     rng = np.random.default_rng(8)
     data_sets = [recorded(rng, f"sway_{i}", sway(rng, 0.08, 0.4 + 0.1 * i), JENKINS) for i in range(4)]
-    choice = choose_model(data_sets)
+    choice = choose_model(data_sets, shared_offset=False, before=None)
     assert choice.held_out == "whole recordings"
     assert choice.fit.model.name == "elastoplastic"
-    alone = choose_model(data_sets[:1])
+    alone = choose_model(data_sets[:1], shared_offset=False, before=None)
     assert "parts" in alone.held_out
     assert alone.fit.model.name == "elastoplastic"
 
@@ -120,7 +128,7 @@ def test_whole_recordings_are_held_out_where_they_can_stand_for_one_another() ->
 def test_a_gain_that_is_real_but_small_keeps_the_simpler_law() -> None:
     """A weak cubic term is well told from nothing, yet predicts held-out motion hardly better."""
     data_sets = campaign(1, Rubber(hardening=200.0))
-    choice = choose_model(data_sets, [KelvinVoigt(), Hardening()])
+    choice = choose_model(data_sets, [KelvinVoigt(), Hardening()], shared_offset=False, before=None)
     hardening = next(score for score in choice.ranking if score.model.name == "hardening")
     assert hardening.refused is None
     assert hardening.held_out_rms < choice.ranking[-1].held_out_rms

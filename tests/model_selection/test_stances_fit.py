@@ -74,7 +74,7 @@ def balanced(lifted: float, state: float) -> float:
 
 def test_spring_and_element_are_told_apart_through_short_stances() -> None:
     sets, truth = zip(*(walk(f"walk_{seed}", seed) for seed in (1, 2, 3)), strict=True)
-    fit = fit_model(MODELS["elastoplastic"], sets)
+    fit = fit_model(MODELS["elastoplastic"], sets, shared_offset=False)
     errors = np.concatenate(
         [fit.initial_states[one.label] - own for one, own in zip(sets, truth, strict=True)]
     )
@@ -103,14 +103,14 @@ def shaken(seed: int) -> DataSet:
 
 
 def test_a_turn_between_two_samples_takes_nothing_off_the_slip_angle() -> None:
-    fit = fit_model(MODELS["elastoplastic"], [shaken(seed) for seed in (1, 2)])
+    fit = fit_model(MODELS["elastoplastic"], [shaken(seed) for seed in (1, 2)], shared_offset=False)
     assert fit.value("slip_angle") == pytest.approx(SLIP_ANGLE, rel=0.002)
     assert fit.value("slip_torque") == pytest.approx(SLIP_TORQUE, rel=0.002)
 
 
 def test_stances_take_the_rate_that_the_filter_leaves_and_states_that_of_the_path() -> None:
     data = shaken(1)
-    (filtered,) = prepare_data_sets([data], cutoff=5.0)
+    (filtered,) = prepare_data_sets([data], cutoff=5.0, drift=True)
     assert filtered.every == 1 / (4 * 5.0 * PERIOD) // 1 > 1
     assert len(filtered.path) == len(filtered.motion) == len(data.motion)
     assert len(filtered.used) == len(filtered.motion.deflection[:: filtered.every])
@@ -125,9 +125,9 @@ def test_a_memory_that_could_not_help_enough_is_not_searched_for(least_gain: flo
         noise = np.random.default_rng(seed).normal(0, 0.05, len(data.torque))
         sets.append(replace(data, torque=K * data.motion.deflection + C * data.motion.rate + noise))
     models = [MODELS["kelvin_voigt"], MODELS["elastoplastic"]]
-    choice = choose_model(sets, models, least_gain=least_gain)
+    choice = choose_model(sets, models, least_gain=least_gain, shared_offset=False, before=None)
     (memory,) = (score.fit for score in choice.ranking if score.model is models[1])
-    tried = models[1].candidates([each.motion for each in prepare_data_sets(sets, 5.0)])
+    tried = models[1].candidates([each.motion for each in prepare_data_sets(sets, 5.0, drift=True)])
     assert choice.fit.model.name == "kelvin_voigt"
     assert bool(np.isclose(tried, memory.shape, rtol=1e-12).any()) is not searched
 
@@ -138,7 +138,7 @@ def test_a_fit_that_had_come_to_rest_looks_for_no_other_landings(monkeypatch: py
     land = model_fit.landed
     monkeypatch.setattr(model_fit, "landed", lambda *given: asked.append(given) or land(*given))
     sets = [walk("walk_1", 1)[0]]
-    before = fit_model(MODELS["elastoplastic"], sets)
+    before = fit_model(MODELS["elastoplastic"], sets, shared_offset=False)
     searched = len(asked)
     assert searched == 1
     fit_again(before, sets)
@@ -149,9 +149,9 @@ def test_a_choice_goes_on_from_the_one_with_a_few_samples_more(monkeypatch: pyte
     """Its landings and its memory are known: the fit is that of a choice from nothing, and what to search is less."""
     models = [MODELS["kelvin_voigt"], MODELS["elastoplastic"]]
     sets = [walk(f"walk_{seed}", seed)[0] for seed in (1, 2, 3)]
-    before = choose_model(sets, models)
+    before = choose_model(sets, models, shared_offset=False, before=None)
     fewer = [replace(one, used=one.used & (np.arange(len(one.used)) % 1000 > 20)) for one in sets]
-    anew = choose_model(fewer, models)
+    anew = choose_model(fewer, models, shared_offset=False, before=None)
     tried: list[int] = []
     of = Pieces.of.__func__  # type: ignore[attr-defined]
 
@@ -161,7 +161,7 @@ def test_a_choice_goes_on_from_the_one_with_a_few_samples_more(monkeypatch: pyte
 
     monkeypatch.setattr(model_fit, "landed", None)
     monkeypatch.setattr(Pieces, "of", classmethod(counted))
-    after = choose_model(fewer, models, before=before)
+    after = choose_model(fewer, models, before=before, shared_offset=False)
     assert after.fit.model.name == "elastoplastic"
     np.testing.assert_allclose(after.fit.values, anew.fit.values, rtol=2e-3)
     assert max(tried) < len(models[1].candidates([one.motion for one in sets]))

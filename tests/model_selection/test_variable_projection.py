@@ -29,8 +29,8 @@ def element(fit: ModelFit, prepared: list[FilteredDataSet], angle: float, moved:
 def test_white_deviations_are_those_of_the_dense_problem() -> None:
     """Columns: K, C, the element's torque and its derivative by the slip angle, an offset and a state a recording."""
     data_sets = campaign(2, JENKINS)
-    fit = fit_model(MODEL, data_sets)
-    prepared = prepare_data_sets(data_sets, fit.cutoff)
+    fit = fit_model(MODEL, data_sets, shared_offset=False)
+    prepared = prepare_data_sets(data_sets, fit.cutoff, drift=True)
     angle, step = float(fit.shape[0]), 1e-3 * float(fit.shape[0])
     wider, narrower = (element(fit, prepared, angle + sign * step) for sign in (1, -1))
     later, earlier = (element(fit, prepared, angle, sign * 1e-3) for sign in (1, -1))
@@ -57,7 +57,7 @@ def test_a_step_moves_the_initial_state_towards_the_truth(truth: float, guess: f
     motion = BushMotion(path, np.gradient(path, PERIOD), PERIOD)
     torque = MODEL.columns(motion, [0.01], np.array([truth])) @ [434.0, 15.89, 5.0] + 1.5
     used = np.ones(len(path), dtype=bool)
-    prepared = prepare_data_sets([DataSet("strained", motion, torque, used)], 5.0)
+    prepared = prepare_data_sets([DataSet("strained", motion, torque, used)], 5.0, drift=True)
     problem = Problem(MODEL, prepared, shared_offset=False)
     point = problem.at(np.array([0.01]), np.array([guess]))
     linear = problem.linearised(point)
@@ -66,7 +66,7 @@ def test_a_step_moves_the_initial_state_towards_the_truth(truth: float, guess: f
 
 
 def test_drift_is_taken_off_and_means_stay() -> None:
-    (each,) = prepare_data_sets(campaign(1, Rubber())[:1], 5.0)
+    (each,) = prepare_data_sets(campaign(1, Rubber())[:1], 5.0, drift=True)
     time = np.flatnonzero(each.used).astype(float)
     rows = np.column_stack([3.0 + 0.01 * time, np.sin(0.05 * time) - 2.0])
     clear = each.without_nuisance(rows)
@@ -87,7 +87,7 @@ def test_a_run_without_a_used_sample_keeps_its_place() -> None:
     columns = model.columns(motion, [0.02])
     torque = np.nan_to_num(columns @ np.array([400.0, 15.0, 5.0])) + 0.01 * random.normal(size=time.size)
     used = np.isfinite(angle) & (time < 24.0)  # the third run is not used at all
-    fit = fit_model(model, [DataSet("sway", motion, torque, used)])
+    fit = fit_model(model, [DataSet("sway", motion, torque, used)], shared_offset=False)
     assert ITERATIONS > 0
     assert len(fit.initial_states["sway"]) == 3
     np.testing.assert_allclose(fit.value("stiffness"), 400.0, rtol=0.01)

@@ -19,7 +19,15 @@ from plantar.robot.model import load_robot
 def model_of(folder: Path, **changes: object) -> str:
     robot = load_robot(write_robot(folder, **changes))
     elements = {("left", "roll"): Element(0.01, 2.0, 0.1)}
-    return estimator_model(robot, cutoff=5.0, wrench_delay=(0.004, 0.001), elements=elements, compliance={})
+    return estimator_model(
+        robot,
+        cutoff=5.0,
+        wrench_delay=(0.004, 0.001),
+        elements=elements,
+        compliance={},
+        linear=(),
+        misplaced={},
+    )
 
 
 def test_it_says_what_the_robot_file_says(tmp_path: Path) -> None:
@@ -38,7 +46,15 @@ def test_a_foot_zeroed_under_load_has_no_torque_that_grows_with_it(tmp_path: Pat
     robot = load_robot(write_robot(tmp_path, uncertainty={"bush_position": 0.003}))
     always = replace(robot, feet={**robot.feet, "left": replace(robot.feet["left"], contact="always")})
     for model, aside in ((robot, 0.005), (always, 0.0)):
-        text = estimator_model(model, cutoff=5.0, wrench_delay=(0.0, 0.0), elements={}, compliance={})
+        text = estimator_model(
+            model,
+            cutoff=5.0,
+            wrench_delay=(0.0, 0.0),
+            elements={},
+            compliance={},
+            linear=(),
+            misplaced={},
+        )
         left, right = (line.split()[1:] for line in text.splitlines() if line.startswith("place_std"))
         assert [float(value) for value in left] == pytest.approx([aside, 0.005]), "aside, and above"
         assert [float(value) for value in right] == pytest.approx([0.005, 0.005])

@@ -23,7 +23,9 @@ def browser() -> Iterator[Any]:
 def test_a_robot_is_drawn_when_it_is_opened(browser: Any, tmp_path: Path) -> None:
     page = tmp_path / "fleet.html"
     groups = [GroupRow("day 1", "new sole", START, "ab" * 32)]
-    page.write_text(fleet_page(summary_of(changing_fleet(), failures(), 0.1), groups), encoding="utf-8")
+    page.write_text(
+        fleet_page(summary_of(changing_fleet(), failures(), 0.1), groups, run=None), encoding="utf-8"
+    )
     visit = Visit(browser, page)
     robot = visit.page.locator("details.motion", has_text="new sole")
     assert visit.page.locator(".uplot").count() == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -45,8 +46,10 @@ def show(view: live.LiveView, replay: Replay, step: int = 10) -> None:
 def test_it_is_served_here_alone_and_says_nothing_on_stdout(
     robot: RobotModel, replay: Replay, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with live.LiveView(robot, port=8471) as view:
-        assert view.url.startswith("http://127.0.0.1:")
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with live.LiveView(robot, port=port) as view:
+        assert view.url == f"http://127.0.0.1:{port}"
         assert urllib.request.urlopen(view.url).status == 200
         with pytest.raises(
             urllib.error.URLError

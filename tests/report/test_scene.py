@@ -82,7 +82,7 @@ def test_near_boxes_are_drawn_over_far_ones_in_their_sides_colours() -> None:
     boxes = [
         Box(corners + [0.4, 0, 0], "right"),
         Box(corners + [0, 0.3, 0.2], "left"),
-        Box(corners - [0.2, 0, 0]),
+        Box(corners - [0.2, 0, 0], side=""),
     ]
     figure = stances([("one", boxes), ("other", boxes[1:])])
     front, beside, side, _ = figure.axes

@@ -32,6 +32,7 @@ DRAFT = Draft(
     {"left": BushHeight(-0.08, 0.015, "half way")},
     JointNames(),
     {},
+    remarks=(),
 )
 
 

@@ -52,6 +52,16 @@ def filtered(log: MotionLog) -> MotionLog:
     )
 
 
+def test_an_accelerometer_that_reads_nothing_says_nothing() -> None:
+    log = record(sway(duration=30.0))
+    orientation, rates, acceleration = parts(log)
+    silent, missing = acceleration.copy(), acceleration.copy()
+    silent[2000:2100], missing[2000:2100] = 0.0, np.nan
+    with np.errstate(all="raise"):
+        found = tilt_error_of(orientation, rates, silent, log.period)
+    assert found == tilt_error_of(orientation, rates, missing, log.period)
+
+
 def test_a_pull_is_noticed_and_a_true_attitude_has_none() -> None:
     log = record(sway(duration=30.0))
     assert not tilt_error_of(*parts(log), log.period).believed
@@ -116,7 +126,7 @@ def test_a_lean_is_what_the_accelerometer_feels_over_gravity_and_height(hertz: f
     lean = 0.01 * np.sin(omega * time)
     push = np.column_stack([(GRAVITY + height * omega**2) * lean, np.zeros_like(lean)])
     inner = slice(500, -500)
-    found = lean_of(push, np.zeros((len(time), 2)), height, 0.01)[inner]
+    found = lean_of(push, np.zeros((len(time), 2)), height, 0.01, every=1)[inner]
     assert found[:, 0] @ lean[inner] / (lean[inner] @ lean[inner]) == pytest.approx(kept, abs=0.04)
     assert np.abs(found[:, 1]).max() < 1e-9
 

@@ -46,6 +46,15 @@ def test_zeros_that_are_the_angle_stay(values: np.ndarray) -> None:
     assert not dropped_samples(values).any()
 
 
+def test_a_stretch_at_an_end_has_nothing_beside_it_to_jump_from() -> None:
+    """The last reading is none that came before the first ones, nor the other way round."""
+    values = np.full(400, -0.3)
+    for start in (1, 100, 200, 395):
+        values[start : start + 4] = 0.0
+    found = np.flatnonzero(dropped_samples(values))
+    assert found.tolist() == [*range(99, 105), *range(199, 205)]
+
+
 def device(kind: str, sizes: np.ndarray) -> dict[str, np.ndarray]:
     """Columns of an IMU or a force sensor: its gyroscope or torque may rest at zero, gravity or load may not."""
     if kind == "imu":

@@ -43,7 +43,7 @@ def ringing(periods: int, size: float) -> Array:
     ],
 )
 def test_spikes_stand_out_by_ten_steps_are_few_and_alone(values: Array, found: list[int]) -> None:
-    assert list(lone_spikes(values, 0.01)) == found
+    assert list(lone_spikes(values, 0.01, landings=None)) == found
 
 
 @pytest.mark.parametrize(("place", "found"), [(660, False), (740, True), (460, False), (380, True)])
@@ -53,7 +53,7 @@ def test_steps_are_compared_with_those_of_a_second_and_of_the_seconds_beside_it(
     values = 0.1 * STEPS
     values[500:600] = STEPS[500:600]
     values[place] = 5.0
-    assert list(lone_spikes(values, 0.01)) == [place] * found
+    assert list(lone_spikes(values, 0.01, landings=None)) == [place] * found
 
 
 @pytest.mark.parametrize(("count", "severity"), [(10, "info"), (11, "warning")])

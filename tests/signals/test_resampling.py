@@ -32,6 +32,12 @@ def test_sampling_describes_rate_jitter_and_gaps() -> None:
     assert end == pytest.approx(time[1000])
 
 
+def test_what_was_left_out_on_purpose_is_no_gap() -> None:
+    time = np.concatenate([TIME[:100], TIME[200:300], TIME[400:]])
+    log = MotionLog("a", time, {}, left_out=((TIME[99], TIME[200]),))
+    assert sampling(log).gaps == ((TIME[299], TIME[400]),)
+
+
 def test_an_even_log_is_left_alone() -> None:
     log = record(sway(duration=2.0))
     assert evenly_sampled(log) is log

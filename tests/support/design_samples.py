@@ -50,7 +50,9 @@ def told() -> Softness:
 @cache
 def reach() -> Reach:
     lines = Lines.drawn(20.0, np.random.default_rng(1))
-    return Reach(legs(), linear(), lines, told(), [told().times(0.6), told(), told().times(1.5)])
+    return Reach(
+        legs(), linear(), lines, told(), [told().times(0.6), told(), told().times(1.5)], element=None
+    )
 
 
 @cache
@@ -63,7 +65,7 @@ def from_one_beginning(reach: Reach, criterion: Criterion, seed: int) -> np.ndar
     """Coefficients of a motion that took a few tries."""
     start = 0.1 * np.random.default_rng(seed).standard_normal(reach.lines.size)
     with patch.object(search, "TRIED", TRIES):
-        return better_motion(reach, criterion, start)
+        return better_motion(reach, criterion, start, known=0.0)
 
 
 _searched: dict[bytes, np.ndarray] = {}
@@ -92,7 +94,7 @@ class RehearsedOnce:
         self, robot: RobotModel, plan: Plan, told: Softness, factors: Sequence[float], *_: object
     ) -> list[Rehearsal]:
         if self.one is None:
-            (self.one,) = rehearse(robot, plan, told, [1.0])
+            (self.one,) = rehearse(robot, plan, told, [1.0], progress=lambda _: None)
         return [replace(self.one, factor=factor) for factor in factors]
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from biped import TRUTH, BushModel, drawn_up
+from biped import TRUTH, BushModel, drawn_up, record, sway
 from biped_robot import FEET
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -35,6 +36,12 @@ def assert_truth(result: FeetResult, rel: float, feet: tuple[str, ...] = FEET, t
     for row in result.offsets:
         law = truth[row.foot, row.axis]
         assert row.foot not in feet or row.value == pytest.approx(law.offset, abs=0.2 * rel * law.stiffness)
+
+
+def biased(name: str, seed: int, shift: float) -> MotionLog:
+    """Exact, about offsets that are moved by `shift` [N·m]."""
+    truth = {key: replace(law, offset=law.offset + shift) for key, law in TRUTH.items()}
+    return record(sway(name, seed=seed, truth=truth))
 
 
 def rotational(result: FeetResult) -> np.ndarray:

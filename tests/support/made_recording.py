@@ -10,6 +10,7 @@ from plantar.contact.stances import Stances
 from plantar.feet.recording import Recording, Role
 from plantar.feet.regression.prediction import Prediction
 from plantar.logs.motion_log import MotionLog
+from plantar.sensors.attitude_scale import AttitudeScale
 
 PERIOD = 0.01
 FOOT = "left"
@@ -58,6 +59,10 @@ def made_recording(
         noise={FOOT: np.zeros((2, 2))},
         places={FOOT: np.zeros((count, 2))},
         notes=(),
+        zeros=(),
+        imu_turns={},
+        encoder_rates={},
+        attitude_scale=AttitudeScale(),
     )
 
 

@@ -61,7 +61,13 @@ def test_each_robot_has_its_story() -> None:
 
 def test_the_files_are_a_manifest_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fleet, "planned", planned_part)
-    manifest = write_fleet(tmp_path, 1, 2, motion=MOTION, preset="sensors", seed=3)
+    asked: list[object] = []
+    monkeypatch.setattr(fleet, "stories", lambda *given: asked.append(given) or stories(*given))
+    monkeypatch.setattr(fleet, "record", lambda *given: asked.append(given[-1]) or record(*given))
+    manifest = write_fleet(
+        tmp_path, 1, 2, motion=MOTION, preset="sensors", seed=3, ageing=0.03, progress=lambda _: None
+    )
+    assert asked == [(1, 2, 3, 0.03), 3, 3], "robots, days, seed and ageing; the sensors' seed"
     rows = list(csv.DictReader(manifest.open()))
     assert [row["time"] for row in rows] == ["2026-01-01T09:00:00Z", "2026-01-02T09:00:00Z"]
     truth = list(csv.DictReader((tmp_path / "truth.csv").open()))
@@ -76,10 +82,10 @@ def test_the_files_are_a_manifest_with_its_truth(tmp_path: Path, monkeypatch: py
 @pytest.mark.parametrize("preset", ["plain_log", "imperfect"])
 def test_a_preset_with_robots_or_logs_of_its_own_is_refused(tmp_path: Path, preset: str) -> None:
     with pytest.raises(PlantarError, match=f"value '{preset}': has robots or logs of its own"):
-        write_fleet(tmp_path, 1, 1, motion=MOTION, preset=preset, seed=0)
+        write_fleet(tmp_path, 1, 1, motion=MOTION, preset=preset, seed=0, progress=lambda _: None)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_fleet_is_no_more_than_a_hundred_thousand_logs(tmp_path: Path) -> None:
     with pytest.raises(PlantarError, match="are too many logs"):
-        write_fleet(tmp_path, 1001, 100, motion=MOTION, preset="sensors", seed=0)
+        write_fleet(tmp_path, 1001, 100, motion=MOTION, preset="sensors", seed=0, progress=lambda _: None)

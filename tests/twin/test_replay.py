@@ -77,6 +77,9 @@ def test_a_servo_that_gives_is_told_to_go_further(robot: RobotModel) -> None:
     place = robot.joint_names.index(joint)
     np.testing.assert_allclose((plans[1] - plans[0])[:, place], 0.5 * SERVO_ANGLE, rtol=1e-6)
     assert not np.delete(plans[1] - plans[0], place, axis=1).any()
+    unread = np.full(len(log), np.nan)
+    silent = plan_of(robot, log.with_columns({f"joint.{joint}.effort": unread})).positions
+    np.testing.assert_array_equal(silent, plans[0], "an effort that is never read bends nothing")
 
 
 @pytest.mark.parametrize("rpy", [(np.pi, 0.0, 0.3), (0.0, np.pi / 2, 0.0), (0.2, -0.1, 2.0)])

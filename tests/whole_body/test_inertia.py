@@ -292,13 +292,13 @@ def test_consistency_bounds_what_least_squares_would_make_negative() -> None:
     prior = Prior.around(pin.Inertia.FromEllipsoid(2.0, 0.3, 0.2, 0.1).toDynamicParameters())
     regressor = np.eye(10)
     target = prior.cad - np.array([10 * prior.cad[0], *np.zeros(9)])
-    found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-6)
+    found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-6, positive=())
     assert is_consistent(found)
     assert (
         np.linalg.eigvalsh(pseudo_inertia(found))[0]
         < 0.05 * np.linalg.eigvalsh(pseudo_inertia(prior.cad))[-1]
     )
-    free = consistent_fit(Normal.of(regressor, 1.05 * prior.cad, prior), prior, 1e-9)
+    free = consistent_fit(Normal.of(regressor, 1.05 * prior.cad, prior), prior, 1e-9, positive=())
     np.testing.assert_allclose(free, 1.05 * prior.cad, rtol=1e-4, atol=1e-6)
 
 

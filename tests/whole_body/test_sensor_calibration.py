@@ -34,7 +34,10 @@ def log(robot: RobotModel) -> MotionLog:
 
 def codes(robot: RobotModel, log: MotionLog) -> set[str]:
     body = Body.of(robot, floating=True)
-    return {note.code for note in calibrate(body, [prepare_whole(body, log, DynamicsSettings())])[1]}
+    return {
+        note.code
+        for note in calibrate(body, [prepare_whole(body, log, DynamicsSettings())], as_recorded=False)[1]
+    }
 
 
 def test_a_reversed_channel_of_turned_sensors_is_found(robot: RobotModel, log: MotionLog) -> None:
@@ -71,7 +74,7 @@ def test_a_tilted_mount_is_told_in_degrees(
         columns |= dict(zip(names, (log.stack(names) @ turn.T).T, strict=True))
     body = Body.of(robot, floating=True)
     tilted = prepare_whole(body, log.with_columns(columns), DynamicsSettings())
-    notes = [note for note in calibrate(body, [tilted])[1] if note.code == "imu_tilt"]
+    notes = [note for note in calibrate(body, [tilted], as_recorded=False)[1] if note.code == "imu_tilt"]
     assert len(notes) == said
     for note in notes:
         told = [float(part) for part in note.text.split("by (")[1].split(")")[0].split(",")]

@@ -34,7 +34,7 @@ class AttitudeFilter {
     const auto [w, x, y, z] = q_;
     // The world's up in the IMU's frame; the reading is turned onto it, slowly: at first as a mean of all readings.
     const double up[3] = {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
-    const double gain = std::max(2 * std::numbers::pi * BLEND_FREQUENCY, 1.0 / std::max(age_, dt));
+    const double gain = std::max(2 * std::numbers::pi * BLEND_FREQUENCY, 1.0 / age_);
     const double vx = (rate[0] + gain * (a[1] * up[2] - a[2] * up[1])) * dt / 2;
     const double vy = (rate[1] + gain * (a[2] * up[0] - a[0] * up[2])) * dt / 2;
     const double vz = (rate[2] + gain * (a[0] * up[1] - a[1] * up[0])) * dt / 2;

@@ -30,7 +30,7 @@ class Written:
     figures: tuple[Path, ...]
 
 
-def write_campaign_report(campaign: Campaign, progress: Callable[[str], None] = lambda _: None) -> Written:
+def write_campaign_report(campaign: Campaign, progress: Callable[[str], None]) -> Written:
     """Write `report.html`, `robot.html` and `figures/` beside the campaign's `result.json`."""
     directory = campaign.directory
     progress("draw the figures")

@@ -31,7 +31,7 @@ from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.uncertainty import EXACT
 from plantar.twin import PAPER, TwinRecording, play, play_all, write_campaign
 from plantar.twin.bush import Feet
-from plantar.twin.presets import DEFAULT, preset_named
+from plantar.twin.presets import preset_named
 from plantar.twin.replay import Replayed, replay
 
 UNSEEN: Final = ("Tilt1", "Squat", "Myrand4", "Manual_both_pitch")  # the paper's cross-validation
@@ -90,10 +90,10 @@ class Campaign:
 
 def run_campaign(
     directory: Path,
-    course: Course | None = None,
-    preset: str = DEFAULT,
-    seed: int = 0,
-    progress: Progress = lambda _: None,
+    course: Course | None,
+    preset: str,
+    seed: int,
+    progress: Progress,
 ) -> Campaign:
     """Play the course on the twin, identify from the files that it wrote, and save `result.json`.
 

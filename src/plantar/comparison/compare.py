@@ -42,7 +42,7 @@ class KindScore:
     chest_roll: float | None
     torque: float | None
     until: float
-    fell: float | None = None
+    fell: float | None
     tips: float | None = None
     flat_chest: float | None = None
 

@@ -46,9 +46,9 @@ def scenes(
     result: FeetResult,
     robot: RobotModel,
     plan: Plan,
-    swing: float | None = None,
-    stance: Stance = USUAL,
-    tips: bool = False,
+    swing: float | None,
+    stance: Stance,
+    tips: bool,
 ) -> Mapping[str, Played]:
     """By kind of feet, the scene that `plan` is played on; `WITH_LOOP` only of rubber that slips or a sole that tips.
 

@@ -96,7 +96,7 @@ def zero_moment_point(wrench: Array, least: float) -> Array:
     return np.column_stack([-wrench[:, 4] / force, wrench[:, 3] / force])
 
 
-def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Array] | None = None) -> Balance:
+def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Array] | None) -> Balance:
     """ZMP from the measured wrenches, over the soles that stand.
 
     `soles`: where they stand, (4, 4) each; without it they are put on the floor as the first sample's encoders

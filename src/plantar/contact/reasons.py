@@ -42,7 +42,7 @@ class LeftOut:
     """A reason with its detail: an angle, an axis."""
 
     reason: Reason
-    detail: str = ""
+    detail: str
 
     @property
     def text(self) -> str:

@@ -18,9 +18,7 @@ RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
 
 
-def height_changes(
-    log: MotionLog, robot: RobotModel, rows: Mask | slice = slice(None)
-) -> Iterator[tuple[str, Array]]:
+def height_changes(log: MotionLog, robot: RobotModel, rows: Mask | slice) -> Iterator[tuple[str, Array]]:
     """Each cause and its change (n,) [m] of the right sole's height over the left one's, at one deviation of the cause,
     at the n samples `rows` (N,).
 

@@ -119,7 +119,7 @@ def vertical_half_width(reach: Reach, coefficients: Array) -> Array:
     return np.asarray(NORMAL95 * UNEVEN / np.maximum(moved, 1e-9))
 
 
-def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> Array:
+def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float) -> Array:
     """What is minimised, (...) of motions with coefficients (..., size).
 
     The mean over the range of stiffness: the logarithm of the widest interval, each as a multiple of what is wanted of

@@ -56,9 +56,7 @@ class PaperMotions:
         ]  # fmt: skip
 
 
-def paper_motions(
-    robot: RobotModel, told: Softness, progress: Callable[[str], None] = lambda _: None
-) -> PaperMotions:
+def paper_motions(robot: RobotModel, told: Softness, progress: Callable[[str], None]) -> PaperMotions:
     """Play the fourteen and rank them as `plantar select` does. Raises MotionError where the robot can do none."""
     plans, refused = list[Plan](), dict[str, str]()
     for name in CAMPAIGN:

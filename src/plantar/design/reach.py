@@ -57,7 +57,7 @@ class Reach:
         lines: Lines,
         told: Softness,
         bushes: Sequence[Softness],
-        element: Array | None = None,
+        element: Array | None,
     ) -> None:
         self.lines, self.time = lines, lines.time(RATE)
         self.bushes, self.feet = tuple(bushes), tuple(legs.bushes)

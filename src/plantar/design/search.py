@@ -45,8 +45,8 @@ def best_motion(
     duration: float,
     criterion: Criterion,
     seed: int,
-    known: Array | float = 0.0,
-    progress: Callable[[str], None] = lambda _: None,
+    known: Array | float,
+    progress: Callable[[str], None],
 ) -> tuple[int, Lines, Array]:
     """Place of the stance, lines of a motion of `duration` [s], each beginning's own, and coefficients (size,) of the
     best one within the limits of its stance on its lines; beginnings take the stances in turn. `known` as in
@@ -77,7 +77,7 @@ def best_motion(
     return way.place % len(stances), way.lines, way.motion
 
 
-def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float = 0.0) -> Array:
+def better_motion(reach: Reach, criterion: Criterion, start: Array, known: Array | float) -> Array:
     """The same from one beginning, a motion that is known, where limits are no longer what they were: a few small
     steps."""
     climb = _Climb(reach, criterion, known, 1.0 / reach.alone(), start, NEAR, NEAR)

@@ -89,7 +89,7 @@ def respond(
     wrench: Array,
     tilts: Mapping[str, Array],
     period: float,
-    beside: tuple[float, float] = (0.0, 0.0),
+    beside: tuple[float, float],
 ) -> Response:
     """Motions on soft feet, linear and exact for constant inertia, by the Fourier transform.
 

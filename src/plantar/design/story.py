@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -79,13 +79,13 @@ class Design:
     told: Softness
     factors: tuple[float, float]
     least_stiffness: float
-    legs: Legs = field(repr=False)
-    lines: Lines = field(repr=False)
-    coefficients: Array = field(repr=False)
-    trajectory: Trajectory = field(repr=False)
-    rehearsals: tuple[Rehearsal, ...] = field(repr=False)
+    legs: Legs
+    lines: Lines
+    coefficients: Array
+    trajectory: Trajectory
+    rehearsals: tuple[Rehearsal, ...]
     pairs: int
-    known: Known | None = None
+    known: Known | None
 
     def gentler(self, share: float) -> Trajectory:
         """The motion with a share of its amplitude."""

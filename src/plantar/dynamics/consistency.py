@@ -90,9 +90,7 @@ class Normal:
         return cls(whole.T @ whole, whole.T @ (target - regressor[:, :size] @ prior.cad), scale)
 
 
-def consistent_fit(
-    normal: Normal, prior: Prior, regularisation: float, positive: Sequence[int] = ()
-) -> Array:
+def consistent_fit(normal: Normal, prior: Prior, regularisation: float, positive: Sequence[int]) -> Array:
     """Least squares plus `regularisation` times the distance from the CAD; pseudo-inertias stay positive definite.
 
     positive: which extras may not be negative (friction cannot drive a joint). Returns [inertial parameters, extras].

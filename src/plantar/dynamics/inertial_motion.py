@@ -81,7 +81,7 @@ def inertial_motion(
     robot: RobotModel,
     equation: Equation,
     signals: InertialSignals,
-    kept: slice = slice(None),
+    kept: slice,
     encoders_late: float = 0.0,
     gyroscope_late: float = 0.0,
 ) -> Motion:

@@ -99,7 +99,7 @@ def _unexplained(band: Array, whole: Mask, count: int) -> Array:
     return np.asarray(values - explaining @ solved(products[:, count:], products[:, :count]))
 
 
-def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool = False) -> Array | None:
+def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool) -> Array | None:
     """What the blocks' noise has taken off `values` (k,): to be added; None where noise is most of what there is."""
     size = len(values)
     noise = np.diag(
@@ -180,7 +180,7 @@ def _beside_parabolas(left: Array, parts: StanceRows) -> float:
     return float(weight @ missed**2 - np.sum(along * curves))
 
 
-def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool = False) -> dict[str, float]:
+def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool) -> dict[str, float]:
     """How each block's offset follows values that move by `change` (k,): its mean response stays explained."""
     means = {one.label: one.regressor.mean(axis=0) for one in blocks}
     if shared_offset:

@@ -42,7 +42,7 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     )
 
 
-def factor_of(blocks: Sequence[Block], shared_offset: bool = False) -> TriangularFactor:
+def factor_of(blocks: Sequence[Block], shared_offset: bool) -> TriangularFactor:
     """Triangular factor of all blocks' rows: parameters in the order of `LinearFit.covariance`."""
     places, size = _places(blocks, shared_offset)
     return _factor([_rows(block) for block in blocks], places, size)

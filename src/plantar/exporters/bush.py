@@ -105,8 +105,8 @@ def feet_of_result(
     base: Path,
     *,
     with_offset: bool,
-    hysteresis: bool = False,
-    swing: float | None = None,
+    hysteresis: bool,
+    swing: float | None,
 ) -> tuple[tuple[FootBush, ...], tuple[Note, ...]]:
     """Every foot of a plantar.feet/1 result, and notes on what no target will hold.
 

@@ -40,8 +40,8 @@ class Job:
     out: Path
     with_offset: bool
     remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
-    stance: Stance = USUAL
-    hysteresis: bool = False
+    stance: Stance
+    hysteresis: bool
 
     def head(self, target: str, notes: Notes, *, rests: bool = True, joints: bool = True) -> list[str]:
         """`comment.head` of this export; not `rests`: of a target whose springs have no rest position."""

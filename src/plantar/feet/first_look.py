@@ -107,7 +107,7 @@ def _as_recorded(robot: RobotModel, log: MotionLog) -> list[NewtonEulerResidual]
 
 
 def checked_in_turn(
-    robot: RobotModel, logs: Iterable[MotionLog], meanwhile: Callable[[], object] | None = None
+    robot: RobotModel, logs: Iterable[MotionLog], meanwhile: Callable[[], object] | None
 ) -> list[MotionLog]:
     """Every log `checked`, in order; while one is, the next is read, and while the first is, what is to be done
     `meanwhile`. Raises the error of the first that has one."""

@@ -48,7 +48,7 @@ class FittedFoot:
     ready: PreparedLogs
     thin: PreparedLogs
     jumps: Sequence[Note]
-    elsewhere: Note | None = None
+    elsewhere: Note | None
 
     def told(self, note: Note) -> FittedFoot:
         """The foot with a note more on each axis."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from math import hypot
 from typing import NamedTuple
@@ -64,11 +64,11 @@ class PreparedLogs:
     sensor_delay: SensorDelay
     vertical: VerticalStiffness
     notes: tuple[Note, ...]
-    gain_errors: Mapping[str, GainError] = field(default_factory=dict)
-    torque_gains: Mapping[Axis, TorqueGain] = field(default_factory=dict)
-    turned: Mapping[str, Note] = field(default_factory=dict)
-    imu_turn: ImuTurn = field(default_factory=partial(ImuTurn.unknown, 0.0))
-    slow_filter: Fading | None = None
+    gain_errors: Mapping[str, GainError]
+    torque_gains: Mapping[Axis, TorqueGain]
+    turned: Mapping[str, Note]
+    imu_turn: ImuTurn
+    slow_filter: Fading | None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

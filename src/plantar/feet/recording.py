@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, cast
 
@@ -54,10 +54,10 @@ class Recording:
     noise: Mapping[str, Array]
     places: Mapping[str, Array]
     notes: tuple[Note, ...]
-    zeros: tuple[SwingZero, ...] = ()
-    imu_turns: Mapping[str, Array] = field(default_factory=dict)
-    encoder_rates: Mapping[str, Array] = field(default_factory=dict)
-    attitude_scale: AttitudeScale = field(default_factory=AttitudeScale)
+    zeros: tuple[SwingZero, ...]
+    imu_turns: Mapping[str, Array]
+    encoder_rates: Mapping[str, Array]
+    attitude_scale: AttitudeScale
     every: int = 1
 
     @property

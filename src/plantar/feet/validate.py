@@ -65,7 +65,7 @@ def scored_feet(
     result: FeetResult | str | os.PathLike[str],
     robot: RobotInput,
     logs: LogInputs,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None],
 ) -> tuple[list[ValidationRow], list[Note]]:
     """The rows of `validate_feet`, and a warning for each log that was fitted, and for each foot of each log that
     has no row, with what its seconds are."""

@@ -59,8 +59,8 @@ def inertia_over(
     client: Any,
     robot: str,
     logs: Sequence[str],
-    settings: DynamicsSettings | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    settings: DynamicsSettings | None,
+    progress: Callable[[str], None],
 ) -> DynamicsResult:
     """Inertial parameters of one robot from logs anywhere, on a Dask cluster.
 

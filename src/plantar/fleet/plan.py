@@ -59,7 +59,7 @@ def plan_logs(
     places: Iterable[str],
     robot: RobotModel,
     unit_of: Callable[[str], str],
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None],
 ) -> list[PlannedLog]:
     """When each log was recorded: by its first stamp where that is a date, else by its name, else by its file.
 

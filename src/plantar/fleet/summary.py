@@ -106,7 +106,7 @@ class FleetSummary:
         return {**head, "false_alarms_per_unit_and_year": self.false_alarms, **parts}
 
 
-def summary_of(results: pa.Table, failures: pa.Table, false_alarms: float = FALSE_ALARMS) -> FleetSummary:
+def summary_of(results: pa.Table, failures: pa.Table, false_alarms: float) -> FleetSummary:
     """The summary of a fleet's tables, with `false_alarms` a unit and year where nothing changes.
 
     Raises SettingsError for a rate that is not between 0.001 and 100.

@@ -48,7 +48,7 @@ class Task:
     logs: tuple[Log, ...]
     settings: FeetSettings
     store: Store
-    memory: int | None = None
+    memory: int | None
 
 
 @dataclass(frozen=True)

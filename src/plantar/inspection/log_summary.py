@@ -65,7 +65,7 @@ class LogSummary:
     parameters: tuple[Parameter, ...]
     findings: tuple[Finding, ...]
     notes: tuple[Note, ...]
-    assumptions: tuple[Assumption, ...] = ()
+    assumptions: tuple[Assumption, ...]
 
     def to_dict(self) -> dict[str, Any]:
         plain: dict[str, Any] = finite(asdict(self))

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from threading import Lock
-from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -107,8 +106,8 @@ def open_in_turn(
     paths: Sequence[Path],
     robot: RobotModel,
     kept: Callable[[MotionLog], int],
-    memory: int | None = None,
-    ahead: Mapping[Path, MotionLog] = MappingProxyType({}),
+    memory: int | None,
+    ahead: Mapping[Path, MotionLog],
 ) -> WaitingLogs:
     """Logs read when their turns come, of long ones what moves most: each must fit in `memory` bytes beside those that
     are `kept` of the ones before.

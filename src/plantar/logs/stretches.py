@@ -73,7 +73,7 @@ def stretches_of(
     time: Array,
     names: Iterable[str],
     read: Callable[[str], Array],
-    sensors: Collection[str] = (),
+    sensors: Collection[str],
     longest: float = LONGEST,
 ) -> Stretches | None:
     """The stretches that move most of a recording of these times (N,) [s]; None where it is no longer than `longest`.

@@ -194,9 +194,7 @@ class FilteredDataSet:
         return number[:: self.every][self.used]
 
 
-def prepare_data_sets(
-    data_sets: Sequence[DataSet], cutoff: float, *, drift: bool = True
-) -> list[FilteredDataSet]:
+def prepare_data_sets(data_sets: Sequence[DataSet], cutoff: float, *, drift: bool) -> list[FilteredDataSet]:
     """Thinned and filtered data sets that have samples to use."""
     prepared = [FilteredDataSet.of(data_set.thinned(cutoff), cutoff, drift=drift) for data_set in data_sets]
     return [each for each in prepared if each.used.any()]

@@ -114,9 +114,7 @@ class Fits:
     squares: Array
 
 
-def fit_pieces(
-    pieces: Pieces, chosen: Mask, *, shared_offset: bool = False, begin: Numbers | None = None
-) -> Fits:
+def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool, begin: Numbers | None = None) -> Fits:
     """Least squares for every candidate over the `chosen` pieces (pieces,), with the best initial state of each run.
 
     begin: the states (pieces, g) that the search begins from; those in the middle if left out.

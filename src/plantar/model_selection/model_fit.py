@@ -125,7 +125,7 @@ class ModelFit:
 
 
 def fit_model(
-    model: BushModel, data_sets: Sequence[DataSet], cutoff: float = 5.0, *, shared_offset: bool = False
+    model: BushModel, data_sets: Sequence[DataSet], cutoff: float = 5.0, *, shared_offset: bool
 ) -> ModelFit:
     """Least squares of the data sets' torques under `model`, both sides filtered at `cutoff` [Hz].
 

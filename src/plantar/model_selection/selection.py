@@ -74,9 +74,9 @@ def choose_model(
     models: Sequence[BushModel] = tuple(MODELS.values()),
     cutoff: float = 5.0,
     *,
-    shared_offset: bool = False,
+    shared_offset: bool,
     least_gain: float = LEAST_GAIN,
-    before: ModelChoice | None = None,
+    before: ModelChoice | None,
 ) -> ModelChoice:
     """Fit every model, hold pieces out in turn, and choose. Models must include Kelvin-Voigt.
 

@@ -46,7 +46,7 @@ def is_walk(name: str) -> bool:
     return NAME.fullmatch(name) is not None
 
 
-def gait_of(name: str, period: float | None = None) -> Gait:
+def gait_of(name: str, period: float | None) -> Gait:
     """The gait of a walk's name, which is one of WALKS or such a name with another length in cm; `_2` for trial 2.
 
     `period` [s] replaces the name's own. Raises MotionError for a name that is no walk's and for a period

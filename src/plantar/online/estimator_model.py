@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
@@ -37,8 +36,8 @@ def estimator_model(
     wrench_delay: tuple[float, float],
     elements: Mapping[tuple[str, Axis], Element],
     compliance: Mapping[str, float],
-    linear: Collection[tuple[str, Axis]] = (),
-    misplaced: Mapping[tuple[str, Axis], Sequence[float]] = MappingProxyType({}),
+    linear: Collection[tuple[str, Axis]],
+    misplaced: Mapping[tuple[str, Axis], Sequence[float]],
 ) -> str:
     """The text of the model file.
 

@@ -20,9 +20,7 @@ POINTS: Final = 150  # days drawn of one series; more become means of neighbours
 SHOWN: Final = 200  # alarms on the page: more of them are in fleet.json
 
 
-def fleet_page(
-    summary: FleetSummary, groups: Sequence[GroupRow] = (), run: Mapping[str, Any] | None = None
-) -> str:
+def fleet_page(summary: FleetSummary, groups: Sequence[GroupRow], run: Mapping[str, Any] | None) -> str:
     """`fleet.html` of a summary.
 
     groups: for links to each group's result. run: what `plantar fleet run` counted, in `run.json`.

@@ -51,7 +51,7 @@ def encode(motions: Sequence[Sequence[Track]], limit: int = SIZE_LIMIT) -> tuple
         stride = max(stride + 1, round(stride * size / limit))
 
 
-def encode_motion(tracks: Sequence[Track], stride: int = 1) -> Payload:
+def encode_motion(tracks: Sequence[Track], stride: int) -> Payload:
     """All feet of one motion in one block, track after track: time, flags, then the channels."""
     blocks: list[bytes] = []
     headers: list[dict[str, Any]] = []

@@ -39,7 +39,7 @@ class Draft:
     bushes: Mapping[str, BushHeight]
     names: JointNames
     topics: Mapping[str, str]
-    remarks: Sequence[Remark] = ()
+    remarks: Sequence[Remark]
     numbered: bool = False
 
     def sensor(self, sole: Sole) -> str:

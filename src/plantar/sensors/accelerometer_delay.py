@@ -93,7 +93,7 @@ def device_delay(found: Sequence[AccelerometerDelay], sensor: int = ACCELEROMETE
 
 def filter_delay(
     told: tuple[float, float],
-    gyroscope: ImuFilter | None = None,
+    gyroscope: ImuFilter | None,
     behind: tuple[float, float] = (0.0, np.inf),
 ) -> tuple[float, float]:
     """The delay to read an accelerometer earlier by, or, where it is < 0, orientation and gyroscope, and its deviation
@@ -121,7 +121,7 @@ def filter_delay(
     return (-early, unsure) if kept and late < 0 and least < early < LARGEST else (0.0, std)
 
 
-def imu_delay(told: Sequence[AccelerometerDelay], gyroscope: ImuFilter | None = None) -> tuple[float, float]:
+def imu_delay(told: Sequence[AccelerometerDelay], gyroscope: ImuFilter | None) -> tuple[float, float]:
     """The `filter_delay` [s] and its deviation that logs of one device tell together, each of them as `told`.
     `gyroscope`: what they tell of the filter of the same device."""
     return filter_delay(device_delay(told), gyroscope, device_delay(told, ORIENTATION))

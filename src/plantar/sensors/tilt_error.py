@@ -218,9 +218,7 @@ def stance_leans(
                 yield run, lean_of(push[run], place[:, :2], height, period, every, band), height
 
 
-def lean_of(
-    push: Array, place: Array, height: float, period: float, every: int = 1, band: float = TOLD
-) -> Array:
+def lean_of(push: Array, place: Array, height: float, period: float, every: int, band: float = TOLD) -> Array:
     """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance, at `every` nth sample, up to a
     `band` [Hz].
 

@@ -22,8 +22,6 @@ def dropped_samples(values: Array) -> Mask:
     values: joint angles [rad], or sizes that are zero where a sensor is silent.
     """
     zero, dropped = values == 0, np.zeros(len(values), dtype=bool)
-    if np.count_nonzero(zero) < FEWEST:
-        return dropped
     inner = [run for run in runs(zero) if run.start > BESIDE and run.stop < len(values) - BESIDE]
     if len(inner) < FEWEST:
         return dropped

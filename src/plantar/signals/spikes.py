@@ -87,7 +87,7 @@ def _landings(log: MotionLog) -> Mask:
     return around
 
 
-def lone_spikes(values: Array, period: float, landings: Mask | None = None) -> NDArray[np.intp]:
+def lone_spikes(values: Array, period: float, landings: Mask | None) -> NDArray[np.intp]:
     """Samples (k,) of a column `values` (N,) that one or two alone stand out from those around them by far.
 
     landings: samples (N,) at which steps are compared with those at all landings.

@@ -80,7 +80,7 @@ def write_fleet(
     preset: str,
     seed: int,
     ageing: float = 0.015,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None],
 ) -> Path:
     """Write `robot.yaml`, a log a robot and day, `truth.csv` and the manifest, whose path is returned.
 

@@ -29,7 +29,7 @@ MENDED_AT_MOST = 3  # channels; a sensor with more faults than that is not to be
 
 
 def calibrate(
-    body: Body, recordings: Sequence[Whole], *, as_recorded: bool = False
+    body: Body, recordings: Sequence[Whole], *, as_recorded: bool
 ) -> tuple[Calibration, list[Note]]:
     """Mount of the IMU and faults of the wrench channels, from Newton's law with the CAD's parameters.
 

@@ -38,7 +38,7 @@ def test_a_stiffness_beside_negative_damping_is_weak() -> None:
 def test_a_further_term_is_judged_by_its_width(half_width: float, verdict: str, sign: float) -> None:
     """Twice as wide as stiffness and damping may be; it may be negative, if not zero."""
     ends = sorted((sign * 5000.0 * (1 - half_width), sign * 5000.0 * (1 + half_width)))
-    assert judge_term(sign * 5000.0, (ends[0], ends[1]), Evidence(60.0, 0.02, 0.98))[0] == verdict
+    assert judge_term(sign * 5000.0, (ends[0], ends[1]), Evidence(60.0, 0.02, 0.98, lag=0.0))[0] == verdict
 
 
 def identified(robot: RobotModel, damping: float) -> FeetResult:

@@ -15,7 +15,7 @@ from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 from plantar.results.feet_rows import ValidationRow
 
-GOOD = Evidence(seconds=63.4, excitation=np.radians(1.26), explained=0.98)
+GOOD = Evidence(seconds=63.4, excitation=np.radians(1.26), explained=0.98, lag=0.0)
 NARROW = (390.0, 410.0)
 MISSED = ValidationRow("direct", "Tilt3", "left", "pitch", 1.26, 2.0, 30.0, 4.0, 2.52, 900)
 SLOWLY = "slowly and by some degrees, at 0.1 to 0.5 Hz, for 30 s or more, without lifting the sole's edge"

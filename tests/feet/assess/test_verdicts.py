@@ -24,7 +24,7 @@ from plantar.robot.model import load_robot
 
 NOISY = 0.13
 
-GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
+GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98, lag=0.0)
 
 
 @pytest.mark.parametrize(
@@ -36,10 +36,10 @@ GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
         (400.0, (100.0, 700.0), GOOD, "unidentifiable", "±75 %"),
         (400.0, (-10.0, 810.0), GOOD, "unidentifiable", "reaches zero"),
         (-40.0, (-50.0, -30.0), GOOD, "unidentifiable", "negative"),
-        (400.0, (390.0, 410.0), Evidence(2.0, 0.02, 0.98), "unidentifiable", "2.0 s"),
-        (400.0, (390.0, 410.0), Evidence(8.0, 0.02, 0.98), "weak", "8.0 s"),
-        (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.1), "unidentifiable", "10 %"),
-        (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.6), "weak", "60 %"),
+        (400.0, (390.0, 410.0), Evidence(2.0, 0.02, 0.98, lag=0.0), "unidentifiable", "2.0 s"),
+        (400.0, (390.0, 410.0), Evidence(8.0, 0.02, 0.98, lag=0.0), "weak", "8.0 s"),
+        (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.1, lag=0.0), "unidentifiable", "10 %"),
+        (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.6, lag=0.0), "weak", "60 %"),
         (0.0, (-1.0, 1.0), GOOD, "unidentifiable", "reaches zero"),
         (400.0, (np.nan, np.nan), GOOD, "unidentifiable", "could not be worked out"),
         (400.0, (390.0, 410.0), replace(GOOD, excitation=1e-16), "unidentifiable", "nothing moves"),
@@ -180,7 +180,7 @@ def test_still_axes_are_not_judged_by_moving_ones(tmp_path: Path) -> None:
 
 def test_a_motion_that_contradicts_the_others_makes_numbers_weak() -> None:
     missed = ValidationRow("direct", "tilt", "left", "pitch", 4.1, 4.1, 9.2, 1.0, 2.3, 1000)
-    evidence = Evidence(60.0, 0.02, 0.97, contradicted=missed)
+    evidence = Evidence(60.0, 0.02, 0.97, contradicted=missed, lag=0.0)
     verdict, reason, advice = judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), evidence)
     assert verdict == "weak"
     assert "tilt" in reason
@@ -189,13 +189,13 @@ def test_a_motion_that_contradicts_the_others_makes_numbers_weak() -> None:
 
 
 def test_a_memory_that_goes_through_a_long_lean_is_weak() -> None:
-    evidence = Evidence(60.0, 0.02, 0.99, leaning=0.14)
+    evidence = Evidence(60.0, 0.02, 0.99, leaning=0.14, lag=0.0)
     verdict, reason, advice = judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), evidence)
     assert verdict == "weak"
     assert "leans for 14 %" in reason
     assert advice is not None
     assert "inside the sole" in advice
-    short = Evidence(60.0, 0.02, 0.99, leaning=0.02)
+    short = Evidence(60.0, 0.02, 0.99, leaning=0.02, lag=0.0)
     assert judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), short)[0] == "usable"
 
 

@@ -14,7 +14,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.phases import AIR, SUPPORTS
 from plantar.contact.reasons import Reason
 from plantar.estimation import Block
-from plantar.feet.assess.zero_jumps import CODE, _left_beside, zero_jumps
+from plantar.feet.assess.zero_jumps import CODE, EXPLAINS, _left_beside, zero_jumps
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
@@ -190,7 +190,7 @@ def test_a_step_explains_most_of_what_is_missed(share: float, told: bool) -> Non
     step = 2 * np.sqrt(share / (1 - share)) * (np.arange(2000) >= 1000)
     block = Block("sway", random.standard_normal((2000, 1)), 10 * random.standard_normal(2000), PERIOD, 1)
     whole = missed - missed.mean() + step - step.mean()
-    left = _left_beside(whole, [1000], block)
+    left = _left_beside(whole, [1000], block, share=EXPLAINS)
     assert (left is not None) == told
     if left is not None:
         assert left == pytest.approx((1 - share) * float(whole @ whole), rel=0.05)
@@ -202,5 +202,5 @@ def test_a_stiffness_of_the_recordings_own_is_no_jump_of_its_zero() -> None:
     angle, noise = random.standard_normal((2, 2000))
     block = Block("sway", angle[:, None], 10 * angle, PERIOD, 1)
     step = np.where(np.arange(2000) >= 1000, 0.5, 0.0)
-    assert _left_beside(3 * angle + step + 0.5 * noise, [1000], block) is None
-    assert _left_beside(3 * angle + step + 0.1 * noise, [1000], block) is not None
+    assert _left_beside(3 * angle + step + 0.5 * noise, [1000], block, share=EXPLAINS) is None
+    assert _left_beside(3 * angle + step + 0.1 * noise, [1000], block, share=EXPLAINS) is not None

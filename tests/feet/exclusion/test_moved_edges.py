@@ -53,6 +53,15 @@ def test_where_the_torque_stops_while_the_foot_turns_on_is_an_edge(side: float, 
     assert not np.delete(found, edge, axis=1).any()
 
 
+def test_an_edge_that_stops_the_torque_on_both_sides_lies_where_it_stops_first() -> None:
+    """The centre of pressure rests near one edge whichever way the foot turns on: 10 mm inside, and 4 mm."""
+    angle = 0.04 * SWAY
+    torque = np.clip(STIFFNESS * angle, -6.0, 6.0)
+    inside = np.where(angle > 0, 0.020, 0.026)
+    found = moved(np.where(np.abs(STIFFNESS * angle) < 6.0, torque / LOAD, inside), angle, torque)
+    assert found[:, FRONT] == pytest.approx(0.01, rel=1e-6)
+
+
 def test_a_torque_that_stops_only_on_the_way_out_is_friction() -> None:
     angle = 0.03 * SWAY
     torque = np.clip(STIFFNESS * angle, -6.0, 6.0) + 3.0 * np.sign(np.cos(2 * np.pi * 0.25 * TIME))

@@ -93,7 +93,7 @@ def left_out(result: FeetResult) -> float:
     ids=["noise", "sine", "step", "coarse steps", "constant"],
 )
 def test_nothing_clean_is_a_spike(clean: np.ndarray) -> None:
-    assert not lone_spikes(clean, PERIOD).size
+    assert not lone_spikes(clean, PERIOD, landings=None).size
 
 
 def test_lone_samples_are_found_and_an_impact_is_not() -> None:
@@ -105,7 +105,7 @@ def test_lone_samples_are_found_and_an_impact_is_not() -> None:
     impact = (TIME > 20) & (TIME < 21)
     ringing = np.where(impact, random.standard_normal(6000), 0.0)
     found = np.zeros(6000, dtype=bool)
-    found[lone_spikes(spiked + ringing, PERIOD)] = True
+    found[lone_spikes(spiked + ringing, PERIOD, landings=None)] = True
     beside = (TIME > 18.5) & (TIME < 22.5)
     assert found[truth & ~beside].all(), "every spike"
     assert not found[~truth & ~impact].any(), "nothing else"

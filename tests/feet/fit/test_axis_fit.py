@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,12 +11,15 @@ import pytest
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.reasons import Reason
-from plantar.feet.fit.axis_fit import _where_a_spring_turns, fit_axis
+from plantar.contact.stances import Stances
+from plantar.feet.fit import axis_fit
+from plantar.feet.fit.axis_fit import LEAST_GAIN_IN_STANCES, _where_a_spring_turns, fit_axis
 from plantar.feet.fit.hidden_memory import TORN, UNBELIEVED, UNTIMED, has_memory, moved_by_memory
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
+from plantar.model_selection.selection import LEAST_GAIN
 from plantar.models import KelvinVoigt
 
 OFFSETS = (1.5, -0.7)
@@ -149,3 +153,42 @@ def test_another_place_has_to_explain_half_of_the_squares(share: float, moves: b
     spring = fitted(made, model="kelvin_voigt")
     found = _where_a_spring_turns(spring, made, PlaceSpread(0.005, 0.005, 0.0), False)
     assert (found is not spring) == moves
+
+
+class Asked(Exception):
+    """In place of a choice of models."""
+
+
+@pytest.mark.parametrize(
+    ("steps", "offset"), [(False, "per-motion"), (False, "shared"), (True, "per-motion")]
+)
+def test_what_a_choice_of_models_is_asked(steps: bool, offset: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only of recordings that have a fit; stances follow their own offsets in part, and need a larger gain."""
+    made, stances = recordings(SLIPPING), Stances(np.arange(6000) // 200, np.ones(6000))
+    unused = np.arange(6000) >= 0
+    made.append(
+        replace(made[0], log=replace(made[0].log, name="unused")).without(FOOT, unused, Reason.SOLE_SLIDES)
+    )
+    if steps:
+        made = [replace(one, stances={FOOT: stances}) for one in made]
+        for one in made:
+            one.raw[FOOT].torque[:, 1] = 0.0  # else a turned sensor would explain all
+    before = fit_axis(recordings(SLIPPING), FOOT, "pitch", FeetSettings())
+    assert before is not None
+    asked: dict[str, Any] = {}
+
+    def choose(data_sets: Any, models: Any, cutoff: float, **named: Any) -> None:
+        asked.update(named, sets=data_sets, cutoff=cutoff)
+        raise Asked
+
+    monkeypatch.setattr(axis_fit, "choose_model", choose)
+    settings = FeetSettings(offset=offset)  # type: ignore[arg-type]
+    with pytest.raises(Asked):
+        fit_axis(made, FOOT, "pitch", settings, before=before)
+    assert [one.label for one in asked["sets"]] == ["sway_0", "sway_1"]
+    assert asked["shared_offset"] == (offset == "shared")
+    assert asked["least_gain"] == (LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN)
+    assert asked["before"] is before.choice
+    assert asked["cutoff"] == made[0].cutoff
+    if steps:
+        assert {one.steps.share for one in asked["sets"]} != {0.0}

@@ -106,6 +106,11 @@ def test_without_a_rival_stiffness_moves_by_what_other_axes_show() -> None:
     )
 
 
+def test_a_memory_that_was_chosen_hides_none() -> None:
+    fit = replace(axis_of(("elastoplastic", OTHER, 0.6)), hidden_share=0.3, model=MODELS["elastoplastic"])
+    np.testing.assert_array_equal(moved_by_memory(fit, steps=False), [0.0, 0.0])
+
+
 def test_without_a_caution_nothing_moves() -> None:
     fit = axis_of(("elastoplastic", OTHER, 0.95), caution=None)
     np.testing.assert_array_equal(moved_by_memory(replace(fit, hidden_share=0.3), steps=False), [0.0, 0.0])
@@ -123,8 +128,8 @@ def choice(model: str = "kelvin_voigt", reach: float = 2 * SMALL, caution: str |
 
 
 def test_sensors_that_may_be_late_leave_it_open() -> None:
-    assert cautioned(choice(), timed=False, steps=True).caution == UNTIMED
-    assert cautioned(choice(caution="another"), timed=False, steps=True).caution == "another"
+    assert cautioned(choice(), timed=False, steps=True, torn=False).caution == UNTIMED
+    assert cautioned(choice(caution="another"), timed=False, steps=True, torn=False).caution == "another"
 
 
 @pytest.mark.parametrize(
@@ -137,7 +142,7 @@ def test_sensors_that_may_be_late_leave_it_open() -> None:
     ],
 )
 def test_small_motions_leave_it_open(model: str, reach: float, steps: bool, told: bool) -> None:
-    found = cautioned(choice(model, reach), timed=True, steps=steps).caution
+    found = cautioned(choice(model, reach), timed=True, steps=steps, torn=False).caution
     assert (found is not None) == told
     if found is not None:
         assert "bent by 0.013 rad" in found

@@ -57,6 +57,7 @@ def test_walks_that_agree_stance_by_stance_are_alike() -> None:
 def test_walks_that_differ_show_it() -> None:
     shares = [-0.04, 0.0, 0.04]
     assert told(shares, 0.001) == pytest.approx(0.04 / np.sqrt(3), rel=0.4)
+    assert cause_of(shares, 0.001)[1].freedom == 2.0, "three walks"
 
 
 @pytest.mark.parametrize("scatter", [0.02, 0.2])

@@ -14,6 +14,7 @@ from plantar.contact.stances import Stances
 from plantar.conventions import Array
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
+from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.put_right.encoders_of_fits import (
     Late,
@@ -56,14 +57,27 @@ def slipped(angle: Array) -> Array:
 def ready(recording: Recording, delay: Late = NEWTON) -> PreparedLogs:
     none: Any = None
     told = SensorDelay(0.005, 3e-4, np.inf, True, Note("delay", "info", ""), {}, delay.value, delay.std)
-    return PreparedLogs(none, (recording,), (), FeetSettings(), told, none, ())
+    return PreparedLogs(
+        none,
+        (recording,),
+        (),
+        FeetSettings(),
+        told,
+        none,
+        (),
+        gain_errors={},
+        torque_gains={},
+        turned={},
+        imu_turn=ImuTurn.unknown(0.0),
+        slow_filter=None,
+    )
 
 
 def fitted(logs: PreparedLogs, model: str = "kelvin_voigt") -> dict[str, FittedFoot]:
     fit = fit_axis(logs.fitted, FOOT, "pitch", FeetSettings(), MODELS[model])
     assert fit is not None
     thin: Any = SimpleNamespace(fitted=logs.fitted)
-    return {FOOT: FittedFoot(FOOT, None, {"pitch": fit}, {}, logs, thin, ())}  # type: ignore[arg-type]
+    return {FOOT: FittedFoot(FOOT, None, {"pitch": fit}, {}, logs, thin, (), elsewhere=None)}  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("model", "slip_torque"), [("kelvin_voigt", 0.0), ("elastoplastic", 3.0)])
@@ -95,7 +109,8 @@ def test_force_sensors_are_read_with_the_encoders_as_newton_ties_them() -> None:
     logs = ready(recorded(0.0), Late(0.0, NEWTON.std))
     logs = replace(logs, fitted=(logs.fitted[0].with_wrenches_later(-late),))
     logs = replace(logs, sensor_delay=replace(logs.sensor_delay, follows=1.25, feet={FOOT: 0.004}))
-    right = read_at(logs, Late(late / 1.25, 1e-4))
+    right = read_at(replace(logs, unseen=logs.fitted), Late(late / 1.25, 1e-4))
+    np.testing.assert_array_equal(right.unseen[0].bushes[FOOT].torque, right.fitted[0].bushes[FOOT].torque)
     assert right.sensor_delay.delay == pytest.approx(0.005 + late)
     assert right.sensor_delay.feet == pytest.approx({FOOT: 0.004 + late})
     torques = [one.fitted[0].bushes[FOOT].torque[50:-50, 0] for one in (logs, right, ready(recorded(0.0)))]

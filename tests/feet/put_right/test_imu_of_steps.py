@@ -58,7 +58,18 @@ def read(exact: Recording) -> Recording:
 def ready(recording: Recording) -> PreparedLogs:
     none: Any = None
     return PreparedLogs(
-        none, (recording,), (), FeetSettings(), none, none, (), imu_turn=ImuTurn.unknown(MOUNT)
+        none,
+        (recording,),
+        (),
+        FeetSettings(),
+        none,
+        none,
+        (),
+        imu_turn=ImuTurn.unknown(MOUNT),
+        gain_errors={},
+        torque_gains={},
+        turned={},
+        slow_filter=None,
     )
 
 
@@ -66,7 +77,7 @@ def fitted(logs: PreparedLogs) -> dict[str, FittedFoot]:
     fit = fit_axis(logs.fitted, FOOT, "pitch", FeetSettings(), KelvinVoigt())
     assert fit is not None
     thin: Any = SimpleNamespace(fitted=logs.fitted)
-    return {FOOT: FittedFoot(FOOT, None, {"pitch": fit}, {}, logs, thin, ())}  # type: ignore[arg-type]
+    return {FOOT: FittedFoot(FOOT, None, {"pitch": fit}, {}, logs, thin, (), elsewhere=None)}  # type: ignore[arg-type]
 
 
 def stiffness(feet: dict[str, FittedFoot]) -> float:

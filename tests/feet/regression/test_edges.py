@@ -14,7 +14,7 @@ from plantar.contact.stances import Stances
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.load_torque import late_encoder_torque, load_torque
-from plantar.feet.regression.model_columns import model_columns
+from plantar.feet.regression.model_columns import UNTURNED, model_columns
 from plantar.feet.regression.prediction import predict
 from plantar.feet.regression.regression_data import blocks_of, data_set_of, motion_of, path_of
 from plantar.models import MODELS, KelvinVoigt
@@ -96,7 +96,7 @@ def test_an_imu_s_turn_moves_the_angle_and_its_rate() -> None:
     turns = np.zeros((COUNT, 2, 3))
     turns[:, 0, 2] = TIME
     found = motion_of(replace(recording, imu_turns={FOOT: turns}), FOOT, "pitch", (0.0, 0.0, 0.01))
-    plain = motion_of(recording, FOOT, "pitch")
+    plain = motion_of(recording, FOOT, "pitch", imu_turned=UNTURNED)
     assert found.deflection - plain.deflection == pytest.approx(0.01 * TIME)
     assert found.rate - plain.rate == pytest.approx(np.full(COUNT, 0.01))
 
@@ -180,7 +180,7 @@ def test_each_turn_of_the_imu_has_its_own_motion() -> None:
     recording = made_recording("sway", ANGLE, TORQUE)
     seen = np.random.default_rng(0).normal(0, 0.1, (2, 3)) * np.sin(TIME)[:, None, None]
     recording = replace(recording, imu_turns={FOOT: seen})
-    plain = motion_of(recording, FOOT, "pitch")
+    plain = motion_of(recording, FOOT, "pitch", imu_turned=UNTURNED)
     for turn in ((0.01, 0.0, 0.0), (0.0, 0.02, -0.01), (0.01, 0.0, 0.0)):
         for column, axis in enumerate(("pitch", "roll")):
             turned = motion_of(recording, FOOT, axis, turn)

@@ -9,7 +9,7 @@ import pytest
 
 from made_recording import LOAD, made_recording
 from plantar.feet.regression.axis import FittedModel
-from plantar.feet.regression.load_torque import load_of, load_torque, moment_columns, place_columns
+from plantar.feet.regression.load_torque import ALL, load_of, load_torque, moment_columns, place_columns
 from plantar.models import KelvinVoigt
 
 TIME = 0.01 * np.arange(1000)
@@ -32,8 +32,8 @@ def test_a_higher_centre_turns_the_horizontal_force_with_opposite_signs() -> Non
     wrench = bush.wrench.copy()
     wrench[:, 0], wrench[:, 1] = 20.0, 30.0
     recording = replace(recording, bushes={"left": replace(bush, wrench=wrench)})
-    assert moment_columns(recording, "left", "pitch")[:, 1] == pytest.approx(np.full(1000, 20.0))
-    assert moment_columns(recording, "left", "roll")[:, 1] == pytest.approx(np.full(1000, -30.0))
+    assert moment_columns(recording, "left", "pitch", rows=ALL)[:, 1] == pytest.approx(np.full(1000, 20.0))
+    assert moment_columns(recording, "left", "roll", rows=ALL)[:, 1] == pytest.approx(np.full(1000, -30.0))
 
 
 def test_a_turned_sensor_shows_the_other_axis() -> None:

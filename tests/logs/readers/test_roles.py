@@ -66,7 +66,7 @@ def test_unit_and_sign_go_into_the_columns_in_their_order() -> None:
         ("wrench.l", (1, 2, 3), (4, 5, 6)),
         ("wrench.l.torque_first", (4, 5, 6), (1, 2, 3)),
     ):
-        found = role_columns(role, values, (), path, sign=-1.0)
+        found = role_columns(role, values, (), path, sign=-1.0, unit=None)
         assert [found[f"wrench.l.force.{axis}"][0] for axis in "xyz"] == [-value for value in force]
         assert [found[f"wrench.l.torque.{axis}"][0] for axis in "xyz"] == [-value for value in torque]
 
@@ -74,7 +74,7 @@ def test_unit_and_sign_go_into_the_columns_in_their_order() -> None:
 def test_roll_pitch_and_yaw_together_are_turns_about_fixed_axes() -> None:
     """First about x, then about the world's y, then about its z, by a library's composition."""
     angles = np.random.default_rng(3).uniform(-1.4, 1.4, (20, 3))
-    found = role_columns("imu.a.orientation.rpy", angles, (), Path("a.log"))
+    found = role_columns("imu.a.orientation.rpy", angles, (), Path("a.log"), unit=None)
     read = np.column_stack([found[f"imu.a.orientation.{axis}"] for axis in "xyzw"])
     np.testing.assert_allclose(
         Rotation.from_quat(read).as_matrix(), Rotation.from_euler("xyz", angles).as_matrix(), atol=1e-12
@@ -84,13 +84,13 @@ def test_roll_pitch_and_yaw_together_are_turns_about_fixed_axes() -> None:
 def test_both_orders_of_a_quaternion_go_to_their_own_columns() -> None:
     values = np.array([[0.1, 0.2, 0.3, 0.4]])
     for order in ("wxyz", "xyzw"):
-        found = role_columns(f"imu.a.orientation.{order}", values, (), Path("a.log"))
+        found = role_columns(f"imu.a.orientation.{order}", values, (), Path("a.log"), unit=None)
         assert [found[f"imu.a.orientation.{axis}"][0] for axis in order] == values[0].tolist()
 
 
 def test_a_vector_of_another_length_is_refused_with_both_lengths() -> None:
     for role, length in (("imu.a.angular_velocity", 3), ("wrench.l", 6), ("imu.a.orientation.wxyz", 4)):
         with pytest.raises(LogError, match=rf"the log has {length - 1} values a sample, not {length}"):
-            role_columns(role, np.zeros((2, length - 1)), (), Path("a.log"))
+            role_columns(role, np.zeros((2, length - 1)), (), Path("a.log"), unit=None)
     with pytest.raises(LogError, match=r"has 3 values a sample, not 2 \(valid: columns\.joints"):
-        role_columns("joints.position", np.zeros((2, 3)), ["a", "b"], Path("a.log"))
+        role_columns("joints.position", np.zeros((2, 3)), ["a", "b"], Path("a.log"), unit=None)

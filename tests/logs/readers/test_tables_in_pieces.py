@@ -15,7 +15,7 @@ from plantar.errors import LogError
 from plantar.logs.readers import open_log
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables import csv_text, parquet_file
-from plantar.logs.readers.tables.parquet_pages import BrokenPage, check_pages
+from plantar.logs.readers.tables.parquet_pages import BrokenPage, _Header, check_pages
 
 SMALL = 2**28
 
@@ -153,3 +153,12 @@ def test_a_page_that_unpacks_to_more_than_its_numbers_is_not_unpacked(
     monkeypatch.setattr(ReadLimit, "numbers", lambda *_: None)
     with pytest.raises(LogError, match="unpacks to 80 kB"):
         open_log(path)
+
+
+@pytest.mark.parametrize("count", [1, 14, 15, 200])
+def test_a_list_in_a_pages_header_is_passed_over(count: int) -> None:
+    """Thrift's compact form: up to 14 entries are counted in the list's first byte, more in a number behind it."""
+    more = bytes([count]) if count < 128 else bytes([count & 127 | 128, count >> 7])
+    listed = bytes([count << 4 | 5]) if count < 15 else b"\xf5" + more
+    header = _Header(b"\x19" + listed + b"\x02" * count + b"\x15\x0e\x00")
+    assert header.struct({1, 2}) == {2: 7}

@@ -15,7 +15,7 @@ from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 from plantar.sensors.delays import sensor_delay
 from plantar.sensors.delays.lagged_log import lagged_log
-from plantar.sensors.delays.refined_delays import refined_delays
+from plantar.sensors.delays.refined_delays import APART, refined_delays
 from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
@@ -204,6 +204,7 @@ def test_a_robot_that_stands_still_leaves_the_robot_files_word(twin: RobotModel,
     found = estimate_wrench_delay(told, [still])
     assert found.note.code == "delay_unknown"
     assert (found.delay, found.std, found.doubtful) == (0.0, 0.004, False)
+    assert found.encoders_std == APART
 
 
 def wrong_urdf(robot: RobotModel, seed: int) -> RobotModel:

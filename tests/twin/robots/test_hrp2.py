@@ -104,6 +104,8 @@ def test_mujoco_reads_the_scene_as_it_is_told() -> None:
     simulated = mujoco.MjModel.from_xml_string(mjcf_text(hrp2.robot(), PAPER, Scene(timestep=5e-4)))
     assert simulated.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
     assert simulated.opt.timestep == 5e-4
+    for body in hrp2.description().bodies[1:]:
+        assert simulated.actuator(body.joint).forcerange == pytest.approx([-body.effort, body.effort])
     np.testing.assert_array_equal(simulated.opt.gravity, [0.0, 0.0, -9.80665])
 
 

@@ -66,7 +66,7 @@ class Rehearsal:
         """Of a foot's centre of pressure from the border of its sole [m]."""
         return min(self.sole_margins)
 
-    def feet_found(self, robot: RobotModel, draws: int = DRAWS) -> tuple[FeetResult | None, ...]:
+    def feet_found(self, robot: RobotModel, draws: int) -> tuple[FeetResult | None, ...]:
         """What `identify feet` finds in each of so many recordings; None where it finds nothing."""
         if self.rollout is None or self.world is None:
             return ()
@@ -79,7 +79,7 @@ def rehearse(
     plan: Plan,
     told: Softness,
     factors: Sequence[float],
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None],
 ) -> list[Rehearsal]:
     """Play a plan on feet of `factors` times the stiffness told, on all cores, with the imperfections of the default
     preset."""

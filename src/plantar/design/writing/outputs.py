@@ -39,7 +39,7 @@ def check_outputs(robot: RobotModel, rate: float, targets: Sequence[str]) -> Non
 
 
 def write_design(
-    found: Design, path: Path, rate: float, targets: Sequence[str] = (), approach: bool = False
+    found: Design, path: Path, rate: float, targets: Sequence[str], approach: bool
 ) -> dict[str, Any]:
     """Write the motion as CSV, beside it the JSON, which is returned, and the sheet; and files for the controllers in
     `targets`, and gentler versions of all where `approach`.

@@ -29,7 +29,7 @@ def tree_of(job: Job, notes: Notes, meshes: Collection[str] | None = None) -> Sd
     return SdfTree.load(job.model, ankles)
 
 
-def sdf_from_urdf(path: Path, notes: Notes, meshes: Collection[str] | None = None) -> ET.Element:
+def sdf_from_urdf(path: Path, notes: Notes, meshes: Collection[str] | None) -> ET.Element:
     """The URDF's links, joints, inertias and shapes. ExportError: a joint of another type.
 
     `meshes`: endings of mesh files that the reader takes; shapes of others are left out with a note.

@@ -43,7 +43,7 @@ class Evidence:
     seconds: float
     excitation: float
     explained: float
-    lag: float = 0.0
+    lag: float
     contradicted: ValidationRow | None = None
     leaning: float = 0.0
     caution: str | None = None

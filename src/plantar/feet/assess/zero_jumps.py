@@ -136,7 +136,7 @@ def _jumps(
     return found
 
 
-def _left_beside(missed: Array, rows: Sequence[int], block: Block, share: float = EXPLAINS) -> float | None:
+def _left_beside(missed: Array, rows: Sequence[int], block: Block, share: float) -> float | None:
     """What steps at these rows leave of the squares that are `missed` (n,), beside the block's own columns; None where
     they do not explain this share of what these leave, or are small."""
     drift = np.zeros((len(missed), 0)) if block.nuisance is None else block.nuisance

@@ -92,7 +92,7 @@ def may_hide_a_memory(motions: Sequence[BushMotion]) -> bool:
     return reach(motions) < ALL_SHOWN
 
 
-def cautioned(choice: ModelChoice, *, timed: bool, steps: bool, torn: bool = False) -> ModelChoice:
+def cautioned(choice: ModelChoice, *, timed: bool, steps: bool, torn: bool) -> ModelChoice:
     """The choice with a caution where a memory cannot be believed, or could not show.
 
     timed: whether it is known when the sensors read; steps: whether the foot steps, of which `half_turns` tells; torn:

@@ -47,7 +47,7 @@ class AxisDifferences(NamedTuple):
     recordings: frozenset[str]
 
 
-def recordings_apart(axes: Sequence[AxisDifferences], prior: float, *, exact: bool = False) -> Apart:
+def recordings_apart(axes: Sequence[AxisDifferences], prior: float, *, exact: bool) -> Apart:
     """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it.
 
     Before they are compared, by as much as they can be told apart by: motions that show differences badly leave them.

@@ -25,7 +25,7 @@ def load_of(recording: Recording, foot: str) -> Array:
     return recording.loads(foot)[:, 2]
 
 
-def moment_columns(recording: Recording, foot: str, axis: Axis, rows: Mask | slice = ALL) -> Array:
+def moment_columns(recording: Recording, foot: str, axis: Axis, rows: Mask | slice) -> Array:
     """Torque (n, 2) for each metre by which the bush's centre is beside and above its place in the robot file.
 
     A centre that is dz higher takes dz·F_x off the pitch torque and adds dz·F_y to the roll torque; the compressed z

@@ -67,7 +67,7 @@ def memory_path(recording: Recording, fit: FittedModel) -> BushMotion:
     return replace(path, deflection=path.deflection - drift.at(recording.time))
 
 
-def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
+def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn) -> BushMotion:
     """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets.
 
     imu_turned: about each of the IMU's axes, by how much it is turned beside the robot file's mount [rad]: angles

@@ -49,7 +49,7 @@ def factor(unit: object, quantity: str, where: str, path: Path) -> float:
 
 
 def role_columns(
-    role: str, values: Array, joints: Sequence[str], path: Path, *, unit: str | None = None, sign: float = 1.0
+    role: str, values: Array, joints: Sequence[str], path: Path, *, unit: str | None, sign: float = 1.0
 ) -> dict[str, Array]:
     """A vector (n, k) that has a role, as columns by the contract's names.
 

@@ -35,7 +35,7 @@ class Dot:
     x: float
     y: float
     radius: float
-    hover: str = ""
+    hover: str
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ class Box:
     """A box by its corners (8, 3) in the world [m], of a robot's side: "right", "left" or ""."""
 
     corners: Array
-    side: str = ""
+    side: str
 
 
 def stances(named: Sequence[tuple[str, Sequence[Box]]]) -> Drawing:

@@ -70,7 +70,7 @@ class Stepper:
         data: mujoco.MjData,
         physics: Physics,
         robot: RobotModel,
-        force: Force | None = None,
+        force: Force | None,
     ) -> None:
         self.model, self.data, self.physics = model, data, physics
         if force is not None:

@@ -22,7 +22,7 @@ TOO_MANY = "Exceeded size limit"  # what the footer's decoder says of a longer l
 
 
 def read_parquet(
-    path: Path, limit: ReadLimit, choose: Choice, rows: Mask | None = None, *, strict: bool
+    path: Path, limit: ReadLimit, choose: Choice, rows: Mask | None, *, strict: bool
 ) -> dict[str, Array]:
     """The chosen columns, (n,) each, in the file's order; these `rows` of them, all if left out.
 
