@@ -20,6 +20,7 @@ LOST_FRAMES = "lost_frames"
 TURNED = 0.02  # rad by which a joint moves, or the same one of another leg, while its position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
+WITHIN_NOISE = 3.0  # times what its noise adds up to: the farthest of many stretches, of joints that rest
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
 # Repeated in a row: fewer a sensor does that is a little slower than the log. Share of the log that is worth a word.
 BURST, LOST = 3, 0.01
@@ -96,9 +97,10 @@ def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
     turned, run = max(((_turned(turns, parted, seconds, run), run) for run in held), key=lambda pair: pair[0])
     moving = np.abs(steps[known & (steps != 0)])
     coarse = float(np.median(moving)) if moving.size else 0.0
-    if turned < max(TURNED, STEPS * coarse):
+    noise = _noise_path(turns[run])
+    if turned < max(TURNED, STEPS * coarse, WITHIN_NOISE * noise):
         return
-    doubt = max(_elsewhere(parted, seconds, run), _noise_path(turns[run]))
+    doubt = max(_elsewhere(parted, seconds, run), noise)
     where = (
         f"column 'joint.{joint}.position', t = {clock(log.time[run.start])} to {clock(log.time[run.stop])} s"
     )
@@ -142,8 +144,12 @@ def _elsewhere(parted: Array, seconds: Array, run: slice) -> float:
 
 
 def _noise_path(turns: Array) -> float:
-    """How far white noise as strong as these `turns` (n,) differ from sample to sample would lead [rad]."""
-    return float(np.std(np.diff(turns)) / np.sqrt(2) * np.sqrt(len(turns)))
+    """How far white noise of a velocity, as strong as these `turns` (n,) differ, would lead [rad].
+
+    Neighbours share a reading, so that those next but one are compared: each is a mean of two, their difference has the
+    deviation of one.
+    """
+    return float(np.std(turns[2:] - turns[:-2]) * np.sqrt(len(turns)))
 
 
 def _at_rest(log: MotionLog) -> Mask:
