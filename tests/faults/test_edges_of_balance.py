@@ -17,11 +17,13 @@ UP = np.tile([0.0, 0.0, 1.0], (10, 1))
 
 @dataclass
 class Stub:
-    """A stance of a misfit [m] and a lean [deg]; `exchanged`: the misfit with the feet's wrenches exchanged."""
+    """A stance of a misfit [m] and a lean [deg]; `exchanged`: the misfit with the feet's wrenches exchanged,
+    `world`: with them read as in the world's axes."""
 
     misfit: float = 0.0
     lean: float = 0.0
     exchanged: float = np.inf
+    world: float = 10.0
     torques: bool = False
     tilt: np.ndarray = field(default_factory=lambda: UP)
     turn: float = 0.0
@@ -40,6 +42,9 @@ class Stub:
 
     def exchanged_wrenches(self) -> Stub:
         return Stub(self.exchanged)
+
+    def world_wrenches(self) -> Stub:
+        return Stub(self.world)
 
 
 def said(
@@ -90,6 +95,20 @@ def test_a_misfit_that_nothing_explains(
     found = said(monkeypatch, Stub(misfit))
     assert (found and found.code) == code
     assert not found or (found.fatal, text in found.text) == (fatal, True)
+
+
+@pytest.mark.parametrize(
+    ("misfit", "world", "turned", "told"),
+    [(0.019, 0.0, None, False), (0.021, 0.0, None, True), (0.1, 0.049, None, True), (0.1, 0.051, None, False),
+     (0.1, 0.029, 0.04, True), (0.1, 0.031, 0.04, False)],
+)  # fmt: skip
+def test_wrenches_in_the_world_s_axes(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, world: float, turned: float | None, told: bool
+) -> None:
+    """They leave less than half, and less than sensors that are turned by a quarter."""
+    quarter = None if turned is None else standing._TurnedWrench(turned, 90, "columns 'wrench.*'")
+    found = said(monkeypatch, Stub(misfit, world=world), turned=quarter)
+    assert (found is not None and "read as in the world's axes" in found.text) == told
 
 
 def test_torques_in_millimetres_are_told_by_their_unit(monkeypatch: pytest.MonkeyPatch) -> None:

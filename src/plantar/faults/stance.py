@@ -41,6 +41,12 @@ class StanceSides:
         return usual(self.moment_arms.sum(axis=(1, 2)))
 
     @property
+    def moving(self) -> float:
+        """The misfit less its median."""
+        total = self.moment_arms.sum(axis=(1, 2))
+        return usual(total - np.median(total, axis=0))
+
+    @property
     def lean(self) -> float:
         """Angle between the ground's usual force and up [rad]."""
         apart = float(np.linalg.norm(np.median(self.push - self.up, axis=0)))
@@ -108,6 +114,17 @@ class Stance:
         """What the sensors of some feet read if they sit turned farther about their own z axes."""
         turn = np.kron(np.eye(2), pin.rpy.rpyToMatrix(0.0, 0.0, np.radians(degrees)))
         return replace(self, wrenches=[w @ turn.T if k in feet else w for k, w in enumerate(self.wrenches)])
+
+    def world_wrenches(self) -> Stance:
+        """What the sensors read if the columns hold their wrenches in the world's axes."""
+        placements = [self.imu.placement, *(foot.wrench.placement for foot in self.robot.feet.values())]
+        _, rotations, _ = self._poses([self.robot.frame(placement) for placement in placements])
+        world = rotations[0] @ rotation_from_quaternion(self.orientation).transpose(0, 2, 1)
+        turned = []
+        for wrench, axes in zip(self.wrenches, rotations[1:], strict=True):
+            parts = wrench.reshape(-1, 2, 3) @ (world.transpose(0, 2, 1) @ axes)
+            turned.append(parts.reshape(-1, 6))
+        return replace(self, wrenches=turned)
 
     def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
         """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""

@@ -53,6 +53,9 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         return
     sides = stance.sides()
     as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
+    if (world := _in_world(stance, sides)) is not None:
+        yield world
+        return
     if found := list(torque_unit(robot, log, sides)):
         # Moments of exchanged forces are so large that right torques look too small.
         unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
@@ -106,6 +109,24 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield from _turned(stance, sides)
 
 
+def _in_world(stance: Stance, sides: StanceSides) -> Finding | None:
+    """A finding where wrenches in the world's axes explain the misfit, what is constant of it and what moves, better
+    than sensors that are turned in the robot file: of a robot that faces along the world's x both may look alike."""
+    if sides.misfit <= NOTABLE:
+        return None
+    world, turned = stance.world_wrenches().sides(), _turned_wrench(stance, sides)
+    least = sides.misfit if turned is None else turned.misfit
+    if world.moving > BETTER * sides.moving or world.misfit > min(
+        BETTER * sides.misfit, least - ALIKE * sides.misfit
+    ):
+        return None
+    balance = f"balance gravity to {100 * world.misfit:.1f} cm instead of {100 * sides.misfit:.1f} cm"
+    valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
+    return Finding(
+        "wrench_turned", f"columns 'wrench.*': read as in the world's axes, they {balance} ({valid})"
+    )
+
+
 def _swapped(or_else: str = "") -> Finding:
     text = f"the feet's wrenches look swapped: exchanged, they balance gravity far better{or_else}"
     return Finding("swapped_feet", f"{text} (check the sensors' names)", True)
@@ -131,16 +152,15 @@ def _turned_wrench(stance: Stance, sides: StanceSides) -> _TurnedWrench | None:
     """The quarter turn that leaves least of the misfit; None where none also follows the motion far better."""
     if not all(wrench[:, :2].any() for wrench in stance.wrenches):
         return None  # vertical force cells have no x and y that could be turned
-    total = sides.moment_arms.sum(axis=(1, 2))
-    moving = usual(total - np.median(total, axis=0))
+    moving = sides.moving
     sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
     ways = {f"columns 'wrench.{sensor}.*'": [place] for place, sensor in enumerate(sensors)}
     found = []
     for columns, places in {**ways, "columns 'wrench.*'": [*range(len(sensors))]}.items():
         for degrees in QUARTERS:
-            trial = stance.turned_wrenches(places, degrees).sides().moment_arms.sum(axis=(1, 2))
-            if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
-                found.append(_TurnedWrench(usual(trial), degrees, columns))
+            trial = stance.turned_wrenches(places, degrees).sides()
+            if trial.moving < BETTER * moving:
+                found.append(_TurnedWrench(trial.misfit, degrees, columns))
     return min(found, default=None)
 
 
