@@ -31,7 +31,9 @@ class Stub:
 
     def sides(self) -> StanceSides:
         arms = np.zeros((10, 2, 6, 3))
-        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit
+        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit * np.linspace(
+            0.9, 1.1, 10
+        )  # what moves is a share
         lean = np.radians(self.lean)
         push = np.tile([np.sin(lean), 0.0, np.cos(lean)], (10, 1)) if self.tilt is UP else self._turned()
         return StanceSides(arms, self.tilt, push)
@@ -54,6 +56,7 @@ def said(
     joints: dict[str, float] | None = None,
     pair: str | None = None,
     turned: standing._TurnedWrench | None = None,
+    unit: tuple[Finding, ...] = (),
 ) -> Finding | None:
     """The finding, where `left` and `joints` are the misfits with a component or a joint reversed."""
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
@@ -61,7 +64,7 @@ def said(
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: left or {})
     monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: pair)
     monkeypatch.setattr(standing, "_turned_wrench", lambda *_: turned)
-    monkeypatch.setattr(standing, "torque_unit", lambda *_: ())
+    monkeypatch.setattr(standing, "torque_unit", lambda *_: unit)
     found = list(standing.check_balance(None, None))  # type: ignore[arg-type]
     assert len(found) <= 1
     return found[0] if found else None
@@ -109,6 +112,17 @@ def test_wrenches_in_the_world_s_axes(
     quarter = None if turned is None else standing._TurnedWrench(turned, 90, "columns 'wrench.*'")
     found = said(monkeypatch, Stub(misfit, world=world), turned=quarter)
     assert (found is not None and "read as in the world's axes" in found.text) == told
+
+
+@pytest.mark.parametrize(("world", "code"), [(0.0349, "wrench_turned"), (0.051, "torque_unit")])
+def test_no_unit_is_told_where_the_world_s_axes_explain_what_moves(
+    monkeypatch: pytest.MonkeyPatch, world: float, code: str
+) -> None:
+    quarter = standing._TurnedWrench(0.034, 90, "columns 'wrench.*'")
+    unit = Finding("torque_unit", "another unit", True)
+    found = said(monkeypatch, Stub(0.1, world=world, exchanged=0.1), turned=quarter, unit=(unit,))
+    assert found is not None
+    assert found.code == code
 
 
 def test_torques_in_millimetres_are_told_by_their_unit(monkeypatch: pytest.MonkeyPatch) -> None:
