@@ -20,7 +20,6 @@ LOST_FRAMES = "lost_frames"
 TURNED = 0.02  # rad by which a joint moves, or the same one of another leg, while its position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
-WITHIN_NOISE = 4.0  # times what its noise adds up to: the farthest of many stretches, of joints that rest
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
 # Repeated in a row: fewer a sensor does that is a little slower than the log. Share of the log that is worth a word.
 BURST, LOST = 3, 0.01
@@ -97,10 +96,9 @@ def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
     turned, run = max(((_turned(turns, parted, seconds, run), run) for run in held), key=lambda pair: pair[0])
     moving = np.abs(steps[known & (steps != 0)])
     coarse = float(np.median(moving)) if moving.size else 0.0
-    noise = _noise_path(turns[run])
-    if turned < max(TURNED, STEPS * coarse, WITHIN_NOISE * noise):
+    if turned < max(TURNED, STEPS * coarse, BEYOND_DOUBT * _noise_path(turns[run])):
         return
-    doubt = max(_elsewhere(parted, seconds, run), noise)
+    doubt = _elsewhere(parted, seconds, run)
     where = (
         f"column 'joint.{joint}.position', t = {clock(log.time[run.start])} to {clock(log.time[run.stop])} s"
     )
