@@ -68,6 +68,14 @@ def no_power_cut() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="module")
+def contact_at_one_step() -> Iterator[None]:
+    """An exported contact is looked at with one step alone, which takes a third of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("plantar.exporters.contact.fit.STEPS", (0.001,))
+        yield
+
+
 @pytest.fixture(scope="session")
 def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
     """The test biped in its usual mounting."""

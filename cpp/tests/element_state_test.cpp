@@ -21,8 +21,8 @@ struct Rubber {
     for (int i = 0; i < 1000; ++i) state = std::clamp(state + by / SLIP, -1.0, 1.0), angle += by;
   }
   void hang() {
-    for (int i = 0; i < 200000; ++i) {
-      const double by = -1e-7 * (STIFFNESS * angle + TORQUE * state);
+    for (int i = 0; i < 20000; ++i) {
+      const double by = -1e-6 * (STIFFNESS * angle + TORQUE * state);
       state = std::clamp(state + by / SLIP, -1.0, 1.0), angle += by;
     }
   }

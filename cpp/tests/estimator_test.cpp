@@ -14,6 +14,7 @@ namespace estimator_test {
 using namespace plantar;
 
 constexpr double NAN_ = std::numeric_limits<double>::quiet_NaN();
+constexpr double RATE_HZ = 250.0;  // of ticks where the rate is not what is tested
 
 bool finite(const FootEstimate& foot) {
   for (const AxisEstimate* a : {&foot.pitch, &foot.roll})
@@ -28,7 +29,7 @@ bool finite(const FootEstimate& foot) {
 void learns(double rate_hz, double delay) {
   FootEstimator estimator(two_feet(delay));
   FootEstimate last;
-  for (int i = 0; i < static_cast<int>(60 * rate_hz); ++i) {
+  for (int i = 0; i < static_cast<int>(40 * rate_hz); ++i) {
     const double t = i / rate_hz;
     const Sensors sensors(t, delay);
     last = estimator.step(sensors.reading(t))[0];
@@ -53,7 +54,7 @@ void survives(Fault fault, std::uint32_t flag, const char* what) {
   std::uint32_t seen = 0;
   bool always_finite = true;
   FootEstimate last;
-  for (int i = 0; i < 10500; ++i) {
+  for (int i = 0; i < 7500; ++i) {
     double t = 4e-3 * i;
     Sensors sensors(t);
     if (t >= 20.0 && t < 21.0) fault(sensors, t);
@@ -79,8 +80,8 @@ void a_sole_that_tips() {
   FootEstimator estimator(two_feet());
   bool told = false, before = false, changed = false;
   FootEstimate last;
-  for (int i = 0; i < 40000; ++i) {
-    const double t = 1e-3 * i;
+  for (int i = 0; i < 10000; ++i) {
+    const double t = i / RATE_HZ;
     Sensors sensors(t);
     const bool pushed = t > PUSHED[0] && t < PUSHED[1];
     for (auto& w : sensors.wrench)
@@ -103,8 +104,8 @@ void notices_other_ground() {
   FootEstimator estimator(two_feet());
   double noticed = 0.0;
   FootEstimate last;
-  for (int i = 0; i < 120000; ++i) {
-    const double t = 1e-3 * i;
+  for (int i = 0; i < 30000; ++i) {
+    const double t = i / RATE_HZ;
     Sensors sensors(t);
     if (t >= 60.0)
       for (auto& w : sensors.wrench) {
@@ -127,8 +128,8 @@ void notices_a_memory() {
   constexpr double SLIP_ANGLE = 0.01, SLIP_TORQUE = 3.0;
   double state = 0.0, last_angle = angle(0, 0.0);
   FootEstimate last;
-  for (int i = 0; i < 60000; ++i) {
-    const double t = 1e-3 * i;
+  for (int i = 0; i < 15000; ++i) {
+    const double t = i / RATE_HZ;
     Sensors sensors(t);
     state = std::clamp(state + (angle(0, t) - last_angle) / SLIP_ANGLE, -1.0, 1.0), last_angle = angle(0, t);
     for (auto& w : sensors.wrench) w[4] += SLIP_TORQUE * state;
@@ -146,7 +147,7 @@ void small_motions_exclude_no_memory() {
     model.feet[0].linear = {told, false};
     FootEstimator estimator(model);
     FootEstimate last;
-    for (int i = 0; i < 60000; ++i) last = estimator.step(Sensors(1e-3 * i).reading(1e-3 * i))[0];
+    for (int i = 0; i < 15000; ++i) last = estimator.step(Sensors(i / RATE_HZ).reading(i / RATE_HZ))[0];
     check::near(last.pitch.stiffness.value, TRUE_STIFFNESS[0], 1e-3 * TRUE_STIFFNESS[0],
                 "the stiffness of small motions");
     check::that(last.pitch.identified == told && !last.roll.identified,
@@ -218,7 +219,6 @@ void broken_models_are_refused() {
 }
 
 void run() {
-  learns(1000.0, 0.0);
   learns(1000.0, 0.0075);
   learns(1000.0, -0.004);
   learns(200.0, 0.0);

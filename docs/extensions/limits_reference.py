@@ -63,11 +63,6 @@ class Limit:
 
 def limits_in(text: str) -> Iterator[Limit]:
     """The limits of one module's source, in its order."""
-    comments = {
-        token.start[0]: token.string.lstrip("# ").strip()
-        for token in tokenize.generate_tokens(io.StringIO(text).readline)
-        if token.type == tokenize.COMMENT
-    }
     lines = text.splitlines()
     for node in ast.parse(text).body:
         names, value = _assigned(node)
@@ -75,10 +70,7 @@ def limits_in(text: str) -> Iterator[Limit]:
             continue
         if not _is_number(value):
             continue
-        beside = [
-            comments[line] for line in range(node.lineno, (node.end_lineno or 0) + 1) if line in comments
-        ]
-        if reason := " ".join(beside) or _above(lines, node.lineno, comments):
+        if reason := _beside(lines[node.lineno - 1 : node.end_lineno]) or _above(lines, node.lineno):
             yield Limit(", ".join(names), _in_one_line(text, value), reason)
 
 
@@ -128,11 +120,21 @@ def _in_one_line(text: str, value: ast.expr) -> str:
     return " ".join((ast.get_source_segment(text, value) or "").split())
 
 
-def _above(lines: list[str], lineno: int, comments: dict[int, str]) -> str:
+def _beside(lines: list[str]) -> str:
+    """The comments of a statement's lines."""
+    tokens = tokenize.generate_tokens(io.StringIO("\n".join(lines)).readline)
+    return " ".join(_words(token.string) for token in tokens if token.type == tokenize.COMMENT)
+
+
+def _above(lines: list[str], lineno: int) -> str:
     first = lineno
-    while first - 1 in comments and lines[first - 2].startswith("#"):
+    while first > 1 and lines[first - 2].startswith("#"):
         first -= 1
-    return " ".join(comments[line] for line in range(first, lineno))
+    return " ".join(_words(line) for line in lines[first - 1 : lineno - 1])
+
+
+def _words(comment: str) -> str:
+    return comment.lstrip("# ").strip()
 
 
 def _place(file: Path) -> str:

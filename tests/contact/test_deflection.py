@@ -18,7 +18,7 @@ from plantar.errors import DataError, RobotError
 from plantar.robot.model import Foot, Imu, Placement, RobotModel, Sole, WrenchSensor
 
 QUANTITIES = ("deflection", "rate", "wrench", "torque", "force_z", "sole_position", "heading")
-SAMPLES = 203  # not a multiple of any vector's length
+SAMPLES = 43  # not a multiple of any vector's length
 
 
 def robot(urdf: Path, imu: str, ankles: dict[str, str], seed: int) -> RobotModel:

@@ -122,6 +122,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_folder(tmp_path_factory.mktemp("results"))
 
 
+@pytest.mark.usefixtures("contact_at_one_step")
 @pytest.mark.parametrize("page", RESULTS)
 def test_a_page_works_on_a_readers_results(page: str, results: Path, tmp_path: Path) -> None:
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)

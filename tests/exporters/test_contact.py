@@ -122,7 +122,13 @@ def test_the_robot_stays_and_only_the_points_touch(exported: tuple[Path, Any], s
     assert {"export_contact", "export_vertical", "export_friction"} <= {note.code for note in exported[1]}
 
 
-def test_a_second_export_takes_the_place_of_the_first(tmp_path: Path) -> None:
+@pytest.fixture
+def one_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contacts are looked at with one step alone, which takes a third of the time."""
+    monkeypatch.setattr("plantar.exporters.contact.fit.STEPS", (0.001,))
+
+
+def test_a_second_export_takes_the_place_of_the_first(tmp_path: Path, one_step: None) -> None:
     made = result(write_urdf(tmp_path / "b.urdf"))
     export(made, "mujoco-contact", tmp_path / "one.xml")
     softer = copy.deepcopy(made)
@@ -135,7 +141,7 @@ def test_a_second_export_takes_the_place_of_the_first(tmp_path: Path) -> None:
     assert soft < 0.7 * stiffer
 
 
-def test_points_go_to_the_body_that_carried_the_ground(tmp_path: Path) -> None:
+def test_points_go_to_the_body_that_carried_the_ground(tmp_path: Path, one_step: None) -> None:
     """So that a force sensor between ankle and sole still feels the ground."""
     model = write_mjcf(tmp_path / "robot.xml")
     root = ET.parse(model).getroot()

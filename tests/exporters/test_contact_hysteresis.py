@@ -20,6 +20,7 @@ from plantar.exporters.spring import Slip
 
 mujoco = pytest.importorskip("mujoco")
 
+pytestmark = pytest.mark.usefixtures("contact_at_one_step")
 TORQUE, ANGLE = 5.0, 0.01  # N·m, rad: where the element beside the spring slips
 BESIDE = TORQUE / ANGLE
 
@@ -69,8 +70,7 @@ class Pressed:
         return float(-2 * np.array(data.qpos[4:7]) @ self.turn[:, place])
 
 
-@pytest.mark.parametrize("axis", ["pitch", "roll"])
-@pytest.mark.parametrize("step", [0.002, 0.004])
+@pytest.mark.parametrize(("axis", "step"), [("pitch", 0.002), ("roll", 0.004)])
 def test_a_foot_slips_as_its_law_says(axis: str, step: float, tmp_path: Path) -> None:
     """By statics of a spring beside an element that slips; with the pivot in the bush at every load the same."""
     urdf = write_urdf(tmp_path / "b.urdf", rigid_legs=True)

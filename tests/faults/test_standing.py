@@ -167,9 +167,10 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     stance = Mock()
     still = np.zeros((20, 3))
     stance.sides.return_value = Mock(
-        misfit=0.3, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still
+        misfit=0.3, moving=0.1, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still
     )
     stance.exchanged_wrenches.return_value.sides.return_value.misfit = 0.02
+    stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: {})

@@ -39,8 +39,8 @@ DRAWN_ANEW = (
     Mutant(
         "faults/stance.py",
         "the last foot's force alone",
-        'force += np.einsum("nij,ni->nj", axes, wrench[:, :3])',
-        'force = np.einsum("nij,ni->nj", axes, wrench[:, :3])',
+        'force += np.einsum("nij,ni->nj", axes[k], wrench[:, :3])',
+        'force = np.einsum("nij,ni->nj", axes[k], wrench[:, :3])',
     ),
     Mutant(
         "contact/phases.py",

@@ -23,7 +23,7 @@ from plantar.online.replay import Replay
 ROOT = Path(__file__).resolve().parents[2]
 CONTROLLER = ROOT / "examples" / "controller"
 MESSAGES = ROOT / "examples" / "ros_messages"
-TICKS = 200_000
+TICKS = 70_000  # a minute's standing and walking, and standing again
 
 pytestmark = [
     pytest.mark.slow,

@@ -46,6 +46,7 @@ def short(plan: Plan, start: float, end: float) -> Plan:
     )
 
 
+SETTLED = Physics(settle=1.0)  # soon enough for seconds of a motion
 PARTS = {"Tilt3": (14.5, 34.5), "Squat": (0.0, 10.0)}  # s: from leaning forward to leaning aside; two bows
 
 
@@ -67,19 +68,19 @@ def roll(played: Plan, physics: Physics | None = None) -> Rollout:
 @functools.cache
 def swayed() -> Rollout:
     """Six seconds of the right foot's manual roll on the paper's bushes."""
-    return rolled(short(plan("Manual_right_roll"), 10.0, 16.0), hrp2.robot(), Physics())
+    return rolled(short(plan("Manual_right_roll"), 10.0, 16.0), hrp2.robot(), SETTLED)
 
 
 @functools.cache
 def tilted() -> Rollout:
     """Four seconds of Tilt3 on the paper's bushes."""
-    return rolled(short(plan("Tilt3"), 2.0, 6.0), hrp2.robot(), Physics())
+    return rolled(short(plan("Tilt3"), 2.0, 6.0), hrp2.robot(), SETTLED)
 
 
 @functools.cache
 def flung() -> Rollout:
     """Three seconds of Myrand5 on the paper's bushes."""
-    return rolled(short(plan("Myrand5"), 10.0, 13.0), hrp2.robot(), Physics())
+    return rolled(short(plan("Myrand5"), 10.0, 13.0), hrp2.robot(), SETTLED)
 
 
 @functools.cache

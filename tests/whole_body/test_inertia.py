@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,9 +21,18 @@ from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
+from plantar.whole_body import regularised_fit
 from plantar.whole_body.inertia import identify_inertia
 from plantar.whole_body.regularised_fit import HeldOutError, chosen_regularisation
 from plantar.whole_body.settings import DynamicsSettings
+
+
+@pytest.fixture(scope="module", autouse=True)
+def weights_by_hundreds() -> Iterator[None]:
+    """Every second weight of the regularisation is tried: each takes a fit of every fold."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(regularised_fit, "REGULARISATIONS", regularised_fit.REGULARISATIONS[::2])
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,6 +20,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
+from plantar.whole_body import regularised_fit
 from plantar.whole_body.joints import (
     Inertia,
     _held_out,
@@ -35,6 +37,14 @@ VISCOUS, COULOMB, OFFSET = 3.0, 2.0, 0.5
 TERMS = "".join(
     f"  {name}: {{terms: [viscous, coulomb, offset, stiffness, inertia]}}\n" for name in ("elbow_joint",)
 )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def weights_by_hundreds() -> Iterator[None]:
+    """Every second weight of the regularisation is tried: each takes a fit of every fold."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(regularised_fit, "REGULARISATIONS", regularised_fit.REGULARISATIONS[::2])
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -28,6 +28,7 @@ FEWEST = 50  # samples
 SECOND = 1.0  # s, within which an attitude that wanders is nearly a parabola in time
 PAST_ZERO = 1.5  # of a value: errors draw it to zero, and chance not far past it
 DRAWN = 0.2  # of a value: one from which errors may have taken more is not known
+SHORT = 1e-10  # of a parabola's largest square: what two rows, or one, do not tell
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
@@ -163,13 +164,20 @@ def _seconds(block: Block) -> StanceRows:
 
 def _beside_parabolas(left: Array, parts: StanceRows) -> float:
     """The weighted squares of what is left (n,) beside a parabola in time of each part."""
-    rest = 0.0
-    for rows in parts.split():
-        root = np.sqrt(parts.weight[rows])
-        curves = root[:, None] * np.linspace(-1.0, 1.0, len(rows))[:, None] ** np.arange(3)
-        missed = root * left[rows]
-        rest += float(np.sum((missed - curves @ np.linalg.lstsq(curves, missed, rcond=None)[0]) ** 2))
-    return rest
+    rows = parts.split()
+    lengths = np.array([len(own) for own in rows])
+    firsts = np.cumsum(lengths) - lengths
+    order = np.concatenate(rows)
+    place = np.arange(len(order)) - np.repeat(firsts, lengths)
+    time = 2.0 * place / np.repeat(np.maximum(lengths - 1, 1), lengths) - 1.0  # -1 to 1 in each part
+    weight, missed = parts.weight[order], left[order]
+    square = time * time
+    powers = np.array([np.ones_like(time), time, square, square * time, square * square]) * weight
+    sums = np.add.reduceat(powers, firsts, axis=1).T
+    along = np.add.reduceat(powers[:3] * missed, firsts, axis=1).T[:, :, None]
+    products = sums[:, np.add.outer(np.arange(3), np.arange(3))]
+    curves = np.linalg.pinv(products, rcond=SHORT, hermitian=True) @ along
+    return float(weight @ missed**2 - np.sum(along * curves))
 
 
 def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool = False) -> dict[str, float]:

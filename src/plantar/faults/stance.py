@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
@@ -81,19 +82,13 @@ class Stance:
     wrenches: list[Array]
 
     def sides(self) -> StanceSides:
-        robot = self.robot
-        placements = [self.imu.placement, *(foot.wrench.placement for foot in robot.feet.values())]
-        centre, rotations, translations = self._poses([robot.frame(placement) for placement in placements])
-        attitude = rotation_from_quaternion(self.orientation)
-        up = np.einsum("nij,nj->ni", rotations[0], attitude[:, 2])
+        up, axes, arms = self._posed
         level = np.eye(3) - up[:, :, None] * up[:, None, :]
-        found, force = np.zeros((len(up), len(robot.feet), 6, 3)), np.zeros((len(up), 3))
+        found, force = np.zeros((len(up), len(self.robot.feet), 6, 3)), np.zeros((len(up), 3))
         for k, wrench in enumerate(self.wrenches):
-            axes = rotations[k + 1].transpose(0, 2, 1)
-            arm = (translations[k + 1] - centre)[:, None, :]
-            found[:, k, :3] = np.cross(arm, axes) * wrench[:, :3, None]
-            found[:, k, 3:] = axes * wrench[:, 3:, None]
-            force += np.einsum("nij,ni->nj", axes, wrench[:, :3])
+            found[:, k, :3] = arms[k] * wrench[:, :3, None]
+            found[:, k, 3:] = axes[k] * wrench[:, 3:, None]
+            force += np.einsum("nij,ni->nj", axes[k], wrench[:, :3])
         size = np.maximum(np.linalg.norm(force, axis=1), 1.0)[:, None]
         return StanceSides(found @ level[:, None] / size[:, None, None], up, force / size)
 
@@ -108,30 +103,46 @@ class Stance:
         return replace(self, positions=positions)
 
     def exchanged_wrenches(self) -> Stance:
-        return replace(self, wrenches=self.wrenches[::-1])
+        return self._feeling(self.wrenches[::-1])
 
     def turned_wrenches(self, feet: Sequence[int], degrees: int) -> Stance:
         """What the sensors of some feet read if they sit turned farther about their own z axes."""
         turn = np.kron(np.eye(2), pin.rpy.rpyToMatrix(0.0, 0.0, np.radians(degrees)))
-        return replace(self, wrenches=[w @ turn.T if k in feet else w for k, w in enumerate(self.wrenches)])
+        return self._feeling([w @ turn.T if k in feet else w for k, w in enumerate(self.wrenches)])
 
     def world_wrenches(self) -> Stance:
         """What the sensors read if the columns hold their wrenches in the world's axes."""
-        placements = [self.imu.placement, *(foot.wrench.placement for foot in self.robot.feet.values())]
-        _, rotations, _ = self._poses([self.robot.frame(placement) for placement in placements])
-        world = rotations[0] @ rotation_from_quaternion(self.orientation).transpose(0, 2, 1)
-        turned = []
-        for wrench, axes in zip(self.wrenches, rotations[1:], strict=True):
-            parts = wrench.reshape(-1, 2, 3) @ (world.transpose(0, 2, 1) @ axes)
+        carrier, mount = self.robot.frame(self.imu.placement)
+        imu = self.robot.tree.poses(self.positions)[0][carrier] @ mount.rotation
+        root = rotation_from_quaternion(self.orientation) @ imu.transpose(0, 2, 1)  # in the world
+        turned = list[Array]()
+        for wrench, axes in zip(self.wrenches, self._posed[1], strict=True):
+            parts = wrench.reshape(-1, 2, 3) @ (root @ axes.transpose(0, 2, 1))
             turned.append(parts.reshape(-1, 6))
-        return replace(self, wrenches=turned)
+        return self._feeling(turned)
 
-    def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
-        """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
+    def _feeling(self, wrenches: list[Array]) -> Stance:
+        """The same poses, which are not found again, with other wrenches."""
+        other = replace(self, wrenches=wrenches)
+        vars(other)["_posed"] = self._posed
+        return other
+
+    @cached_property
+    def _posed(self) -> tuple[Array, list[Array], list[Array]]:
+        """Up (n, 3) by the IMU; of each foot's sensor its axes, and the moments about the centre of mass of unit forces
+        along them, (n, 3, 3) [m]; in the root link."""
         rotations, places = self.robot.tree.poses(self.positions)
-        turns = [rotations[carrier] @ placement.rotation for carrier, placement in frames]
-        at = [places[carrier] + rotations[carrier] @ placement.translation for carrier, placement in frames]
-        return centre_of_mass(self.robot.model, rotations, places), np.array(turns), np.array(at)
+        centre = centre_of_mass(self.robot.model, rotations, places)
+        carrier, mount = self.robot.frame(self.imu.placement)
+        attitude = rotation_from_quaternion(self.orientation)
+        up = np.einsum("nij,nj->ni", rotations[carrier] @ mount.rotation, attitude[:, 2])
+        axes, arms = list[Array](), list[Array]()
+        for foot in self.robot.feet.values():
+            carrier, mount = self.robot.frame(foot.wrench.placement)
+            at = places[carrier] + rotations[carrier] @ mount.translation
+            axes.append((rotations[carrier] @ mount.rotation).transpose(0, 2, 1))
+            arms.append(np.cross((at - centre)[:, None, :], axes[-1]))
+        return up, axes, arms
 
 
 def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:

@@ -148,7 +148,9 @@ def test_the_same_plan_gives_the_same_numbers() -> None:
 
 def test_an_elastoplastic_element_pulls_beside_the_spring() -> None:
     bush = Bush(434.0, 15.89, 323.0, 17.53, roll_slip_torque=2.0, roll_slip_angle=0.01)
-    rollout = roll(short(plan("Manual_right_roll"), 10.0, 14.0), Physics({"right": bush, "left": bush}))
+    rollout = roll(
+        short(plan("Manual_right_roll"), 10.0, 13.0), Physics({"right": bush, "left": bush}, settle=1.0)
+    )
     angle, rate = rollout.bush["right"][:, 2], rollout.bush_rates["right"][:, 2]
     left_over = bush_forces(rollout, "right")[:, 2] - 323.0 * angle - 17.53 * rate
     assert np.abs(left_over).max() == pytest.approx(2.0, abs=1e-3)  # never more than the slip torque
@@ -161,7 +163,9 @@ def test_an_elastoplastic_element_pulls_beside_the_spring() -> None:
 
 def test_a_hardening_bush_pulls_with_the_cube() -> None:
     bush = Bush(434.0, 15.89, 323.0, 17.53, roll_hardening=5000.0)
-    rollout = roll(short(plan("Manual_right_roll"), 10.0, 11.0), Physics({"right": bush, "left": bush}))
+    rollout = roll(
+        short(plan("Manual_right_roll"), 10.0, 11.0), Physics({"right": bush, "left": bush}, settle=0.5)
+    )
     angle, rate = rollout.bush["right"][:, 2], rollout.bush_rates["right"][:, 2]
     expected = 323.0 * angle + 17.53 * rate + 5000.0 * angle**3
     assert bush_forces(rollout, "right")[:, 2] == pytest.approx(expected, abs=2e-3)
@@ -177,7 +181,7 @@ def test_rigid_feet_have_no_bush_but_a_wrench() -> None:
 
 def test_a_sole_that_has_been_on_its_edge_stands_still_again() -> None:
     """A light sole rattled from edge to edge for good, and its damper's torque reached the log."""
-    rollout = roll(short(plan("Manual_both_pitch"), 8.0, 14.0))
+    rollout = roll(short(plan("Manual_both_pitch"), 8.0, 14.0), Physics(settle=1.0))
     pressure = truth_columns(rollout, cut_feet(describe(hrp2.robot()), hrp2.robot()))["left.contact.cop.x"]
     assert np.nanmax(np.abs(pressure)) > 0.1  # tips over the toes or the heel at 0.1086
     for foot in ("left", "right"):
@@ -220,7 +224,8 @@ def test_native_steps_refuse_what_does_not_fit() -> None:
 
 def test_a_slippery_second_lets_the_foot_slide() -> None:
     played = short(plan("Manual_right_roll"), 10.0, 12.5)
-    dry, wet = roll(played), roll(played, Physics(slips=(Slip(0.5, 2.0, 0.005),)))
+    slips = (Slip(0.5, 2.0, 0.005),)
+    dry, wet = roll(played, Physics(settle=1.0)), roll(played, Physics(slips=slips, settle=1.0))
     for rollout, slides in ((dry, False), (wet, True)):
         way = np.ptp(rollout.sensors["right.place"][:, :2], axis=0).max()
         assert (way > 1e-3) == slides
@@ -235,7 +240,7 @@ def test_a_robot_that_falls_is_reported_with_its_time() -> None:
 def test_any_biped_stands_on_given_bushes(tmp_path) -> None:
     robot = load_robot(talos_file(tmp_path))
     bushes = {foot: Bush(1000.0, 20.0, 800.0, 16.0, 4e5, 1000.0) for foot in ("left", "right")}
-    played, physics = short(plan_motion("Tilt3", robot), 2.0, 5.0), Physics(bushes)
+    played, physics = short(plan_motion("Tilt3", robot), 2.0, 4.5), Physics(bushes, settle=1.0)
     rollout = roll_out(robot, played, physics, scene_xml(robot, played, physics))
     stiffness, damping, _ = fit(
         rollout.bush["left"][:, 1], rollout.bush_rates["left"][:, 1], bush_forces(rollout, "left")[:, 1]

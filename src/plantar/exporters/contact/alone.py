@@ -64,7 +64,7 @@ def contact_attributes(point: Point, inverse_mass: float) -> dict[str, str]:
 
 
 # One export's feet are mostly the next one's, and each takes tenths of a second.
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=4096)
 def standing_stiffness(foot: PointFoot, axis: Axis, load: float, step: float, share: float) -> float:
     """K [N·m/rad] of where a foot stands under a load and a torque about one axis, either way; NaN where it falls.
 
@@ -78,7 +78,7 @@ def standing_stiffness(foot: PointFoot, axis: Axis, load: float, step: float, sh
     return 2 * torque / (ends[0] - ends[1])
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=4096)
 def measured(foot: PointFoot, axis: Axis, load: float, step: float) -> Measured:
     """K as `standing_stiffness` says and C of how the foot follows a swing, at the share `MARKED`."""
     held = standing_stiffness(foot, axis, load, step, MARKED)
