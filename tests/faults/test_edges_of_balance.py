@@ -17,11 +17,13 @@ UP = np.tile([0.0, 0.0, 1.0], (10, 1))
 
 @dataclass
 class Stub:
-    """A stance of a misfit [m] and a lean [deg]; `exchanged`: the misfit with the feet's wrenches exchanged."""
+    """A stance of a misfit [m] and a lean [deg]; `exchanged`: the misfit with the feet's wrenches exchanged,
+    `world`: with them read as in the world's axes."""
 
     misfit: float = 0.0
     lean: float = 0.0
     exchanged: float = np.inf
+    world: float = 10.0
     torques: bool = False
     tilt: np.ndarray = field(default_factory=lambda: UP)
     turn: float = 0.0
@@ -29,7 +31,9 @@ class Stub:
 
     def sides(self) -> StanceSides:
         arms = np.zeros((10, 2, 6, 3))
-        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit
+        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit * np.linspace(
+            0.9, 1.1, 10
+        )  # what moves is a share
         lean = np.radians(self.lean)
         push = np.tile([np.sin(lean), 0.0, np.cos(lean)], (10, 1)) if self.tilt is UP else self._turned()
         return StanceSides(arms, self.tilt, push)
@@ -41,6 +45,9 @@ class Stub:
     def exchanged_wrenches(self) -> Stub:
         return Stub(self.exchanged)
 
+    def world_wrenches(self) -> Stub:
+        return Stub(self.world)
+
 
 def said(
     monkeypatch: pytest.MonkeyPatch,
@@ -49,6 +56,7 @@ def said(
     joints: dict[str, float] | None = None,
     pair: str | None = None,
     turned: standing._TurnedWrench | None = None,
+    unit: tuple[Finding, ...] = (),
 ) -> Finding | None:
     """The finding, where `left` and `joints` are the misfits with a component or a joint reversed."""
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
@@ -56,7 +64,7 @@ def said(
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: left or {})
     monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: pair)
     monkeypatch.setattr(standing, "_turned_wrench", lambda *_: turned)
-    monkeypatch.setattr(standing, "torque_unit", lambda *_: ())
+    monkeypatch.setattr(standing, "torque_unit", lambda *_: unit)
     found = list(standing.check_balance(None, None))  # type: ignore[arg-type]
     assert len(found) <= 1
     return found[0] if found else None
@@ -90,6 +98,31 @@ def test_a_misfit_that_nothing_explains(
     found = said(monkeypatch, Stub(misfit))
     assert (found and found.code) == code
     assert not found or (found.fatal, text in found.text) == (fatal, True)
+
+
+@pytest.mark.parametrize(
+    ("misfit", "world", "turned", "told"),
+    [(0.019, 0.0, None, False), (0.021, 0.0, None, True), (0.1, 0.049, None, True), (0.1, 0.051, None, False),
+     (0.1, 0.029, 0.04, True), (0.1, 0.031, 0.04, False)],
+)  # fmt: skip
+def test_wrenches_in_the_world_s_axes(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, world: float, turned: float | None, told: bool
+) -> None:
+    """They leave less than half, and less than sensors that are turned by a quarter."""
+    quarter = None if turned is None else standing._TurnedWrench(turned, 90, "columns 'wrench.*'")
+    found = said(monkeypatch, Stub(misfit, world=world), turned=quarter)
+    assert (found is not None and "read as in the world's axes" in found.text) == told
+
+
+@pytest.mark.parametrize(("world", "code"), [(0.0349, "wrench_turned"), (0.051, "torque_unit")])
+def test_no_unit_is_told_where_the_world_s_axes_explain_what_moves(
+    monkeypatch: pytest.MonkeyPatch, world: float, code: str
+) -> None:
+    quarter = standing._TurnedWrench(0.034, 90, "columns 'wrench.*'")
+    unit = Finding("torque_unit", "another unit", True)
+    found = said(monkeypatch, Stub(0.1, world=world, exchanged=0.1), turned=quarter, unit=(unit,))
+    assert found is not None
+    assert found.code == code
 
 
 def test_torques_in_millimetres_are_told_by_their_unit(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,6 +29,8 @@ WRENCH = {
     foot: [f"wrench.{foot}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"] for foot in FEET
 }
 
+ANKLE_ROLL = "joint.left_ankle_roll.position"
+
 Fault = Callable[[MotionLog], MotionLog]
 
 
@@ -103,6 +105,7 @@ def in_bursts(log: MotionLog) -> MotionLog:
 
 FAULTS: dict[str, tuple[Fault, str, str]] = {
     "joint in degrees": (constant("joint.neck.position", 45.0), "degrees", "joint.neck.position"),
+    "small motion in degrees": (scaled([ANKLE_ROLL], 180 / np.pi), "degrees", "looks like degrees"),
     "gyroscope in degrees": (scaled(GYROSCOPE, 180 / np.pi), "degrees", "angular_velocity"),
     "accelerometer in g": (scaled(ACCELEROMETER, 1 / 9.80665), "accelerometer_unit", "looks like g"),
     "quaternion x y z w": (reordered(["x", "y", "z", "w"]), "quaternion_order", "x y z w"),
@@ -111,6 +114,7 @@ FAULTS: dict[str, tuple[Fault, str, str]] = {
     "one foot's sign": (scaled(WRENCH["left"], -1.0), "sign", "feet.left.wrench"),
     "both feet's signs": (scaled(WRENCH["left"] + WRENCH["right"], -1.0), "sign", "wrench.left.force.z"),
     "force in kgf": (scaled(WRENCH["left"] + WRENCH["right"], 1 / 9.80665), "force_unit", "kgf"),
+    "force in kN": (scaled(WRENCH["left"] + WRENCH["right"], 1e-3), "force_unit", "kN"),
     "feet swapped": (swapped, "swapped_feet", "swapped"),
     "gyroscope dead": (constant("imu.chest.angular_velocity.y"), "dead_channel", "angular_velocity.y"),
     "gyroscope's axis reversed": (scaled(GYROSCOPE[1:2], -1.0), "sign", "angular_velocity.y"),
@@ -143,6 +147,15 @@ def test_each_fault_is_named(robot: RobotModel, log: MotionLog, name: str) -> No
 def test_nothing_is_fitted_to_what_is_impossible(robot: RobotModel, log: MotionLog, name: str) -> None:
     with pytest.raises(DataError, match="lean"):
         identify_feet(robot, [FAULTS[name][0](log)])
+
+
+def test_pounds_are_told_but_a_rope_may_load_feet_as_little(robot: RobotModel, log: MotionLog) -> None:
+    forces = [name for foot in WRENCH.values() for name in foot if ".force." in name]
+    findings = check_log(robot, scaled(forces, 1 / 4.4482)(log))
+    told = [finding for finding in findings if finding.code == "force_unit"]
+    assert len(told) == 1
+    assert "looks like lbf" in told[0].text
+    assert not told[0].fatal
 
 
 def names_of(findings: list[Finding]) -> list[str]:

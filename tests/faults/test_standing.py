@@ -140,9 +140,11 @@ def test_moments_of_exchanged_feet_are_no_unit(scale: float, code: str) -> None:
 def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
     monkeypatch: pytest.MonkeyPatch, tilt: MotionLog, left: float, unit: bool, code: str
 ) -> None:
-    stance, as_read = Mock(), Mock(misfit=0.3, lean=0.0)
+    stance, as_read = Mock(), Mock(misfit=0.3, moving=0.1, lean=0.0)
     stance.sides.return_value = as_read
     stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left)
+    stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
+    monkeypatch.setattr(standing, "_turned_wrench", lambda *_: None)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     found = Finding("torque_unit", "columns 'wrench.*.torque.*': torques 8.4 times as large", True)
     monkeypatch.setattr(
@@ -165,9 +167,10 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     stance = Mock()
     still = np.zeros((20, 3))
     stance.sides.return_value = Mock(
-        misfit=0.3, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still
+        misfit=0.3, moving=0.1, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still
     )
     stance.exchanged_wrenches.return_value.sides.return_value.misfit = 0.02
+    stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: {})

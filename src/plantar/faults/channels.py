@@ -96,9 +96,9 @@ def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
     turned, run = max(((_turned(turns, parted, seconds, run), run) for run in held), key=lambda pair: pair[0])
     moving = np.abs(steps[known & (steps != 0)])
     coarse = float(np.median(moving)) if moving.size else 0.0
-    if turned < max(TURNED, STEPS * coarse):
+    if turned < max(TURNED, STEPS * coarse, BEYOND_DOUBT * _noise_path(turns[run])):
         return
-    doubt = max(_elsewhere(parted, seconds, run), _noise_path(turns[run]))
+    doubt = _elsewhere(parted, seconds, run)
     where = (
         f"column 'joint.{joint}.position', t = {clock(log.time[run.start])} to {clock(log.time[run.stop])} s"
     )
@@ -142,8 +142,12 @@ def _elsewhere(parted: Array, seconds: Array, run: slice) -> float:
 
 
 def _noise_path(turns: Array) -> float:
-    """How far white noise as strong as these `turns` (n,) differ from sample to sample would lead [rad]."""
-    return float(np.std(np.diff(turns)) / np.sqrt(2) * np.sqrt(len(turns)))
+    """How far white noise of a velocity, as strong as these `turns` (n,) differ, would lead [rad].
+
+    Neighbours share a reading, so that those next but one are compared: each is a mean of two, their difference has the
+    deviation of one.
+    """
+    return float(np.std(turns[2:] - turns[:-2]) * np.sqrt(len(turns)))
 
 
 def _at_rest(log: MotionLog) -> Mask:

@@ -33,6 +33,11 @@ FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in anothe
 QUICKEST, USUAL = 5e-5, 0.05  # s between the samples of robots' logs: one unit alone puts them there
 UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9}  # in a second
 QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
+JUMP = 1.0  # rad from row to row
+FORCE_UNITS = {"kgf": GRAVITY, "lbf": 4.4482, "kN": 1e3}  # N
+LIKE = 1.4  # times: feet that carry the robot's weight in another unit
+# A robot on a rope, or one that hangs, may load its feet as little: told, not refused.
+AS_HELD = ("lbf", "kN")
 # Of the weight: a foot that carries so much on average does not stand alone.
 LEAST_PART, MOST_PART = 0.2, 0.85
 SHORTEST = 0.5  # s of a log from which anything can be said
@@ -116,7 +121,12 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         at = float(log.time[int(np.nanargmax(values if worst == most else -values))])
         where = f"column 'joint.{name}.position', t = {clock(at)} s, value {worst:.6g}"
         valid = f"valid: {lower:.4g} to {upper:.4g} rad"
-        if outside and fits and max(abs(least), abs(most)) > 2 * np.pi:
+        # Wrong zeros do not move, and a turn that is lost or gained is a jump.
+        moves = (
+            most - least > upper - lower
+            and np.max(np.abs(np.diff(values[np.isfinite(values)])), initial=0.0) < JUMP
+        )
+        if outside and fits and (moves or max(abs(least), abs(most)) > 2 * np.pi):
             yield Finding("degrees", f"{where}: looks like degrees ({valid})", True)
         elif outside:
             yield Finding("joint_limit", f"{where}: beyond the URDF's limits ({valid})")
@@ -171,13 +181,22 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         together = np.sum(list(loads.values()), axis=0)
         together = together[np.isfinite(together)]
         carried = float(np.median(together)) if together.size else 0.0
-        if 0.07 < carried / weight < 0.14:
-            text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
-            yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)
-        elif len(loads) == 1 and LEAST_PART < float(together.mean()) / weight < MOST_PART:
+        unit = _like_unit(carried / weight, len(loads))
+        if unit is not None:
+            text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like {unit}"
+            yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", unit not in AS_HELD)
+            if unit not in AS_HELD:
+                return
+        if len(loads) == 1 and LEAST_PART < float(together.mean()) / weight < MOST_PART:
             yield _foot_missing(next(iter(loads)), float(together.mean()) / GRAVITY, robot.mass)
         else:
             yield from check_balance(robot, log)
+
+
+def _like_unit(share: float, feet: int) -> str | None:
+    """The unit in which the feet carry all of the weight; one of two feet may carry as little as pounds look like."""
+    near = [unit for unit, size in FORCE_UNITS.items() if 1 / LIKE < share * size < LIKE]
+    return next((unit for unit in near if feet > 1 or unit != "lbf"), None)
 
 
 def _foot_missing(foot: str, carried: float, mass: float) -> Finding:

@@ -42,6 +42,12 @@ class StanceSides:
         return usual(self.moment_arms.sum(axis=(1, 2)))
 
     @property
+    def moving(self) -> float:
+        """The misfit less its median."""
+        total = self.moment_arms.sum(axis=(1, 2))
+        return usual(total - np.median(total, axis=0))
+
+    @property
     def lean(self) -> float:
         """Angle between the ground's usual force and up [rad]."""
         apart = float(np.linalg.norm(np.median(self.push - self.up, axis=0)))
@@ -103,6 +109,17 @@ class Stance:
         """What the sensors of some feet read if they sit turned farther about their own z axes."""
         turn = np.kron(np.eye(2), pin.rpy.rpyToMatrix(0.0, 0.0, np.radians(degrees)))
         return self._feeling([w @ turn.T if k in feet else w for k, w in enumerate(self.wrenches)])
+
+    def world_wrenches(self) -> Stance:
+        """What the sensors read if the columns hold their wrenches in the world's axes."""
+        carrier, mount = self.robot.frame(self.imu.placement)
+        imu = self.robot.tree.poses(self.positions)[0][carrier] @ mount.rotation
+        root = rotation_from_quaternion(self.orientation) @ imu.transpose(0, 2, 1)  # in the world
+        turned = list[Array]()
+        for wrench, axes in zip(self.wrenches, self._posed[1], strict=True):
+            parts = wrench.reshape(-1, 2, 3) @ (root @ axes.transpose(0, 2, 1))
+            turned.append(parts.reshape(-1, 6))
+        return self._feeling(turned)
 
     def _feeling(self, wrenches: list[Array]) -> Stance:
         """The same poses, which are not found again, with other wrenches."""

@@ -18,6 +18,7 @@ from plantar.robot.model import RobotModel
 BETTER = 0.5  # share of the misfit that must be left after the change
 FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
+ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
 CERTAIN = 0.1  # share left: no larger error of masses or mounting is undone so well by chance
@@ -53,7 +54,13 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         return
     sides = stance.sides()
     as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
-    if found := list(torque_unit(robot, log, sides)):
+    world = stance.world_wrenches().sides()
+    if as_is > NOTABLE and (told := _in_world(stance, sides, world)) is not None:
+        yield told
+        return
+    # The weight's share in torques of a foot that yields looks like torques of another size.
+    turning = world.moving < BETTER * sides.moving
+    if not turning and (found := list(torque_unit(robot, log, sides))):
         # Moments of exchanged forces are so large that right torques look too small.
         unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
         yield from found if unit else [_swapped()]
@@ -106,6 +113,21 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield from _turned(stance, sides)
 
 
+def _in_world(stance: Stance, sides: StanceSides, world: StanceSides) -> Finding | None:
+    """A finding where wrenches in the world's axes explain the misfit, what is constant of it and what moves, better
+    than sensors that are turned in the robot file: of a robot that faces along the world's x both may look alike."""
+    turned = _turned_wrench(stance, sides)
+    left = world.misfit / sides.misfit, world.moving / max(sides.moving, ROUNDING)
+    least = 1.0 if turned is None else turned.misfit / sides.misfit
+    if max(left) > 1.0 or np.mean(left) > BETTER or left[0] > least - ALIKE:
+        return None
+    balance = f"balance gravity to {100 * world.misfit:.1f} cm instead of {100 * sides.misfit:.1f} cm"
+    valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
+    return Finding(
+        "wrench_turned", f"columns 'wrench.*': read as in the world's axes, they {balance} ({valid})"
+    )
+
+
 def _swapped(or_else: str = "") -> Finding:
     text = f"the feet's wrenches look swapped: exchanged, they balance gravity far better{or_else}"
     return Finding("swapped_feet", f"{text} (check the sensors' names)", True)
@@ -131,16 +153,15 @@ def _turned_wrench(stance: Stance, sides: StanceSides) -> _TurnedWrench | None:
     """The quarter turn that leaves least of the misfit; None where none also follows the motion far better."""
     if not all(wrench[:, :2].any() for wrench in stance.wrenches):
         return None  # vertical force cells have no x and y that could be turned
-    total = sides.moment_arms.sum(axis=(1, 2))
-    moving = usual(total - np.median(total, axis=0))
+    moving = sides.moving
     sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
     ways = {f"columns 'wrench.{sensor}.*'": [place] for place, sensor in enumerate(sensors)}
     found = []
     for columns, places in {**ways, "columns 'wrench.*'": [*range(len(sensors))]}.items():
         for degrees in QUARTERS:
-            trial = stance.turned_wrenches(places, degrees).sides().moment_arms.sum(axis=(1, 2))
-            if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
-                found.append(_TurnedWrench(usual(trial), degrees, columns))
+            trial = stance.turned_wrenches(places, degrees).sides()
+            if trial.moving < BETTER * moving:
+                found.append(_TurnedWrench(trial.misfit, degrees, columns))
     return min(found, default=None)
 
 

@@ -94,7 +94,7 @@ def fit_prepared(
     logs = [recording.log for recording in ready.fitted]
     if not any(recording.contacts[foot].standing.any() for recording in ready.fitted for foot in robot.feet):
         names = ", ".join(log.name for log in logs)
-        valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
+        valid = "a standing robot, forces in N; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
     return_freed(max(log.size for log in logs))  # what preparation took, copies of the process would keep
     told = newton_told(ready)

@@ -14,7 +14,7 @@ from typing import Final, Literal
 from plantar.errors import PlantarError
 from plantar.fleet.manifest import Group, Log
 from plantar.fleet.places import found_at, is_remote, name_of, time_of
-from plantar.logs.readers import FORMATS, motion_name, open_log
+from plantar.logs.readers import FORMATS, TRUTH, motion_name, open_log
 from plantar.robot.model import RobotModel
 
 Source = Literal["log", "name", "file"]
@@ -110,7 +110,7 @@ def stamp_in(name: str) -> datetime | None:
 def _is_log(place: str) -> bool:
     """A file with the ending of a log, or the folder of a ROS 2 bag, whose parts are no logs of their own."""
     name = name_of(place)
-    known = ".truth." not in name and any(name.lower().endswith(ending) for ending in FORMATS)
+    known = TRUTH not in name and any(name.lower().endswith(ending) for ending in FORMATS)
     if is_remote(place):
         return known
     path = Path(place)

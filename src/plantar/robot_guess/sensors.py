@@ -8,14 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log
+from plantar.logs.readers import TRUTH, open_log
 from plantar.logs.readers.ros.bag import bag_topics
 from plantar.robot.joint_names import words_of
 from plantar.robot.model import RobotModel
 from plantar.robot_guess.biped import LEFT, RIGHT
 
 BAGS = (".mcap", ".db3", ".bag")
-TRUTH = ".truth."  # in the name of what the twin writes beside its logs
 
 
 @dataclass

@@ -15,6 +15,15 @@ from plantar.errors import LogError
 from plantar.logs.readers import open_log
 
 
+@pytest.mark.parametrize("name", ["Tilt3.truth.parquet", "Tilt3.truth.json"])
+def test_what_the_twin_knows_is_no_log(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("{}")
+    with pytest.raises(
+        LogError, match=rf"{name}: is what the twin knows, no log \(valid: the recording beside it"
+    ):
+        open_log(tmp_path / name)
+
+
 @pytest.mark.parametrize(
     "name", ["a.mcap", "a.db3", "a.bag", "a.bin", "a.mat", "a.npz", "a.parquet", "data.log", "a.q"]
 )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Reader = Callable[[Path, "RobotModel | None", ReadLimit], "MotionLog"]
 
+TRUTH = ".truth."  # in the name of what the twin writes beside its logs
 # Ending of the file's name -> module of this package with `read(path, robot, limit) -> MotionLog`.
 FORMATS: dict[str, str] = {
     ".csv": "tables.table",
@@ -80,6 +81,8 @@ def open_log(
         raise LogError("has a name that is no text", path=ascii(str(path)), valid="a name in UTF-8")
     if path.is_file() and path.stat().st_size == 0:
         raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
+    if TRUTH in path.name:  # a pattern such as logs/*.parquet catches it
+        raise LogError("is what the twin knows, no log", path=path, valid="the recording beside it")
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     try:
