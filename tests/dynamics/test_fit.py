@@ -63,6 +63,7 @@ def test_values_and_deviations_are_those_of_the_stacked_problem(rows: str) -> No
     other = random_motion(model, 11, 2)
     expected = regressor(model, *other)[:, :taken][:, :, fit.base.kept] @ values
     np.testing.assert_allclose(fit.predict(*other), expected, rtol=1e-9, atol=1e-8)
+    assert not any(name in repr(fit) for name in ("equation=", "base=", "rows=", "triangle=", "model="))
 
 
 def test_rows_of_another_name_are_refused() -> None:

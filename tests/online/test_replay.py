@@ -24,6 +24,10 @@ def test_a_foot_whose_readings_are_missing_is_not_counted_as_one_that_stands() -
     assert not counted(Contact.LANDING, 0)
 
 
+def test_a_replay_prints_no_arrays() -> None:
+    assert repr(ended()) == "Replay(feet=('left',))"
+
+
 def z_row(value: float, half: float) -> Parameter:
     replay = ended(compliance=value, compliance_std=half / 2, compliance_half_width=half)
     return next(row for row in replay.parameters if row.axis == "z")

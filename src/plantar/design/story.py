@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -79,11 +79,11 @@ class Design:
     told: Softness
     factors: tuple[float, float]
     least_stiffness: float
-    legs: Legs
-    lines: Lines
-    coefficients: Array
-    trajectory: Trajectory
-    rehearsals: tuple[Rehearsal, ...]
+    legs: Legs = field(repr=False)
+    lines: Lines = field(repr=False)
+    coefficients: Array = field(repr=False)
+    trajectory: Trajectory = field(repr=False)
+    rehearsals: tuple[Rehearsal, ...] = field(repr=False)
     pairs: int
     known: Known | None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, get_args
 
@@ -37,17 +37,17 @@ class BaseParameterFit:
     parameters; samples; residual_rms: over all rows [N and N·m]; notes: what is not excited.
     """
 
-    equation: Equation
-    base: BaseParameters
-    rows: tuple[int, ...]
-    triangle: Array
+    equation: Equation = field(repr=False)
+    base: BaseParameters = field(repr=False)
+    rows: tuple[int, ...] = field(repr=False)
+    triangle: Array = field(repr=False)
     values: Array
     std: Array
     rank: int
     samples: int
     residual_rms: float
     notes: tuple[Note, ...]
-    _model: pin.Model
+    _model: pin.Model = field(repr=False)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -43,10 +43,10 @@ class Replay:
     time: (N,) [s]; feet: their names; rows: (N, feet, fields), see `column`; latency: of each step, (N,) [s].
     """
 
-    time: Array
+    time: Array = field(repr=False)
     feet: tuple[str, ...]
-    rows: Array
-    latency: Array
+    rows: Array = field(repr=False)
+    latency: Array = field(repr=False)
 
     def column(self, foot: str, name: str) -> Array:
         """One of `plantar.online.estimates.FIELDS` through the log, (N,), such as `pitch.deflection` [rad]."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -50,10 +50,10 @@ class SceneMotion:
     and roll (N, 2) of each foot [rad], and where each standing foot's sole is, (4, 4)."""
 
     name: str
-    time: Array
-    joints: Array
-    bushes: dict[str, Array]
-    stance: dict[str, Array]
+    time: Array = field(repr=False)
+    joints: Array = field(repr=False)
+    bushes: dict[str, Array] = field(repr=False)
+    stance: dict[str, Array] = field(repr=False)
 
 
 def write_scene(

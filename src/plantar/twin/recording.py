@@ -6,7 +6,7 @@ import json
 import os
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ class Truth:
     """What the twin knows and no sensor saw: `columns` (N,) each, and `facts` about what was put in."""
 
     time: Array
-    columns: Mapping[str, Array]
+    columns: Mapping[str, Array] = field(repr=False)
     facts: Mapping[str, Any]
 
     def column(self, name: str) -> Array:
