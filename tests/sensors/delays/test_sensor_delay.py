@@ -34,7 +34,8 @@ def twin() -> RobotModel:
 def sweep(twin: RobotModel) -> MotionLog:
     """The middle of the sweep, which other tests play, too."""
     log = play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log
-    return checked(twin, log.select((log.time >= 10.0) & (log.time < 32.0)))
+    part = log.select((log.time >= 10.0) & (log.time < 32.0))
+    return checked(twin, MotionLog(part.name, part.time - part.time[0], part.columns))
 
 
 def late(log: MotionLog, columns: str, delay: float) -> MotionLog:
