@@ -55,9 +55,6 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     sides = stance.sides()
     as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
     world = stance.world_wrenches().sides()
-    if as_is > NOTABLE and (told := _in_world(stance, sides, world)) is not None:
-        yield told
-        return
     # The weight's share in torques of a foot that yields looks like torques of another size.
     turning = world.moving < BETTER * sides.moving
     if not turning and (found := list(torque_unit(robot, log, sides))):
@@ -82,9 +79,15 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     left = {**joints, **_reversed_components(stance, sides)}
     best = min(left.values(), default=np.inf)
     turned = _turned_wrench(stance, sides) if as_is > NOTABLE else None
-    if certain and (pair := _exchanged_joints(stance, sides, min(best, exchanged))) is not None:
+    least = min(best, exchanged)
+    if certain and (pair := _exchanged_joints(stance, sides, min(least, world.misfit))) is not None:
         text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
         yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
+    elif as_is > NOTABLE and _in_world(sides, world, least if turned is None else min(least, turned.misfit)):
+        text = "columns 'wrench.*': read as in the world's axes, they balance gravity to "
+        text += f"{100 * world.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
+        valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
+        yield Finding("wrench_turned", f"{text} ({valid})")
     elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
         yield _swapped(f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else "")
     elif turned is not None and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is):
@@ -113,19 +116,12 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield from _turned(stance, sides)
 
 
-def _in_world(stance: Stance, sides: StanceSides, world: StanceSides) -> Finding | None:
-    """A finding where wrenches in the world's axes explain the misfit, what is constant of it and what moves, better
-    than sensors that are turned in the robot file: of a robot that faces along the world's x both may look alike."""
-    turned = _turned_wrench(stance, sides)
+def _in_world(sides: StanceSides, world: StanceSides, least: float) -> bool:
+    """Whether wrenches in the world's axes explain the misfit, what is constant of it and what moves, and clearly
+    better than all else, which leaves the `least` [m]: of a robot that faces along the world's x sensors that are
+    turned in the robot file may look alike."""
     left = world.misfit / sides.misfit, world.moving / max(sides.moving, ROUNDING)
-    least = 1.0 if turned is None else turned.misfit / sides.misfit
-    if max(left) > 1.0 or np.mean(left) > BETTER or left[0] > least - ALIKE:
-        return None
-    balance = f"balance gravity to {100 * world.misfit:.1f} cm instead of {100 * sides.misfit:.1f} cm"
-    valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
-    return Finding(
-        "wrench_turned", f"columns 'wrench.*': read as in the world's axes, they {balance} ({valid})"
-    )
+    return max(left) < 1.0 and sum(left) < 2 * BETTER and left[0] < least / sides.misfit - ALIKE
 
 
 def _swapped(or_else: str = "") -> Finding:

@@ -21,8 +21,8 @@ from plantar.sensors.moment_errors import LOOSE, MomentErrors, prior_deviations
 STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
 ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
 # Share of a torque, which landings behind filters of unlike sensors make of it in every step of a simulated walk: all
-# parts of a walk agree in it, and both feet about one axis.
-LANDINGS = 0.03
+# parts of a walk agree in it.
+LANDINGS = 0.015
 CHANCE = 0.01  # that sensors without a fault are called wrong, by deviations that are on the safe side
 
 
@@ -66,9 +66,9 @@ def moments_of(robot: RobotModel, logs: Sequence[MomentErrors], steps: bool) -> 
         prior[:gains] = ANOTHER_UNIT
         fit = solved(logs, prior)
     if steps:
-        alike = np.zeros((len(prior), len(prior)))
-        alike[:gains, :gains] = LANDINGS**2 * np.kron(np.eye(2), np.ones(2 * [len(robot.feet)]))
-        fit = MomentFit(fit.values, [*fit.parts, Part(alike, MOST_FREEDOM)])
+        alike = np.zeros(len(prior))
+        alike[:gains] = LANDINGS**2
+        fit = MomentFit(fit.values, [*fit.parts, Part(np.diag(alike), MOST_FREEDOM)])
     return fit
 
 
