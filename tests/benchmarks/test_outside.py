@@ -81,11 +81,28 @@ def test_torque_is_spring_damper_and_sliding_element(
 
 def test_exact_sensors_read_the_motion(robot: RobotModel, played: tuple[Motion, dict[str, Rubber]]) -> None:
     motion, _ = played
+    for rate, off in ((1000.0, 1e-9), (250.0, 1e-4)):
+        drawn = sensors.draw_sensors(robot, sensors.EXACT, SEED, rate=rate)
+        columns = sensors.record(robot, motion, sensors.EXACT, drawn, SEED, "mixed")
+        rows = np.round((columns["time"] + 0.05) * 1000).astype(int)
+        read = columns[f"wrench.{robot.feet['left'].wrench.name}.force.z"]
+        exact = motion.wrenches["left"][rows, 2]
+        np.testing.assert_allclose(read, exact, rtol=0, atol=off * np.abs(exact).max())
+
+
+def test_a_log_holds_nothing_quicker_than_its_rate_can(
+    robot: RobotModel, played: tuple[Motion, dict[str, Rubber]]
+) -> None:
+    """A sole that strikes the floor hums at 220 Hz: samples at 250 Hz would make 30 Hz of it."""
+    motion, _ = played
+    hum = 50.0 * np.sin(2 * np.pi * 220.0 * motion.time)
+    humming = replace(motion, wrenches={foot: one + hum[:, None] for foot, one in motion.wrenches.items()})
     drawn = sensors.draw_sensors(robot, sensors.EXACT, SEED, rate=250.0)
-    columns = sensors.record(robot, motion, sensors.EXACT, drawn, SEED, "mixed")
-    rows = np.round((columns["time"] + 0.05) * 1000).astype(int)
-    read = columns[f"wrench.{robot.feet['left'].wrench.name}.force.z"]
-    np.testing.assert_allclose(read, motion.wrenches["left"][rows, 2], rtol=1e-9)
+    name = f"wrench.{robot.feet['left'].wrench.name}.force.x"
+    still, hums = (
+        sensors.record(robot, each, sensors.EXACT, drawn, SEED, "mixed")[name] for each in (motion, humming)
+    )
+    assert np.abs(hums - still)[50:-50].max() < 2.0
 
 
 def test_a_delay_and_a_filter_make_force_sensors_as_late_as_is_told(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -56,37 +55,31 @@ class TriangularFactor:
         """Norm of the residual of the least-squares solution."""
         return float(abs(self.factor[-1, -1]))
 
-    @cached_property
-    def _decomposed(self) -> tuple[Array, Array, Array, Array]:
-        """Left vectors, singular values and right vectors (rows) of the regressor's R with its columns scaled to one
-        length, and these lengths (k,)."""
+    def _scaled(self) -> tuple[Array, Array]:
         triangle = self.factor[:-1, :-1]
-        scale = np.sqrt(np.sum(triangle * triangle, axis=0))
-        scale = np.where(scale > 0, scale, 1.0)
-        return *np.linalg.svd(triangle / scale), scale
-
-    @cached_property
-    def _inverse(self) -> Array:
-        """Of the regressor's R, (k, k); the pseudo-inverse, in scaled columns, where the rank is short."""
-        (left, values, right, scale), rank = self._decomposed, self.rank
-        return np.asarray((right[:rank].T / values[:rank]) @ left[:, :rank].T / scale[:, None])
+        scale = np.linalg.norm(triangle, axis=0)
+        return triangle / np.where(scale > 0, scale, 1.0), np.where(scale > 0, scale, 1.0)
 
     @property
     def condition_number(self) -> float:
         """Condition of the regressor with its columns scaled to one length; inf where it is singular."""
-        values = self._decomposed[1]
+        values = np.linalg.svd(self._scaled()[0], compute_uv=False)
         return float(values[0] / values[-1]) if values.size and values[-1] > 0 else float("inf")
 
     @property
     def rank(self) -> int:
         """How many directions of the parameters the rows excite."""
-        values = self._decomposed[1]
+        values = np.linalg.svd(self._scaled()[0], compute_uv=False)
         return int(np.sum(values > RANK_TOLERANCE * max(values[0], 1e-300))) if values.size else 0
 
     def solve(self) -> Array:
         """The least-squares parameters (k,); of minimum norm in scaled columns where the rank is short."""
-        return np.asarray(self._inverse @ self.factor[:-1, -1])
+        triangle, scale = self._scaled()
+        solution = np.linalg.lstsq(triangle, self.factor[:-1, -1], rcond=RANK_TOLERANCE)[0]
+        return np.asarray(solution / scale)
 
     def information_inverse(self) -> Array:
         """(RᵀR)⁻¹, (k, k): the parameters' covariance for unit residuals; the pseudo-inverse where singular."""
-        return np.asarray(self._inverse @ self._inverse.T)
+        triangle, scale = self._scaled()
+        inverse = np.linalg.pinv(triangle, rcond=RANK_TOLERANCE) / scale[:, None]
+        return np.asarray(inverse @ inverse.T)

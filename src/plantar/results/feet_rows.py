@@ -191,7 +191,7 @@ class Diagnosis:
     variance_shares: Mapping[str, float]
     half_width_percent: float
     text: str
-    advice: str
+    advice: str = ""
 
 
 @dataclass(frozen=True)
