@@ -33,7 +33,6 @@ FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in anothe
 QUICKEST, USUAL = 5e-5, 0.05  # s between the samples of robots' logs: one unit alone puts them there
 UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9}  # in a second
 QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
-JUMP = 1.0  # rad from row to row
 FORCE_UNITS = {"kgf": GRAVITY, "lbf": 4.4482, "kN": 1e3}  # N
 LIKE = 1.4  # times: feet that carry the robot's weight in another unit
 # A robot on a rope, or one that hangs, may load its feet as little: told, not refused.
@@ -121,12 +120,7 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         at = float(log.time[int(np.nanargmax(values if worst == most else -values))])
         where = f"column 'joint.{name}.position', t = {clock(at)} s, value {worst:.6g}"
         valid = f"valid: {lower:.4g} to {upper:.4g} rad"
-        # Wrong zeros do not move, and a turn that is lost or gained is a jump.
-        moves = (
-            most - least > upper - lower
-            and np.max(np.abs(np.diff(values[np.isfinite(values)])), initial=0.0) < JUMP
-        )
-        if outside and fits and (moves or max(abs(least), abs(most)) > 2 * np.pi):
+        if outside and fits and max(abs(least), abs(most)) > 2 * np.pi:
             yield Finding("degrees", f"{where}: looks like degrees ({valid})", True)
         elif outside:
             yield Finding("joint_limit", f"{where}: beyond the URDF's limits ({valid})")
