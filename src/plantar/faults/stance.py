@@ -82,7 +82,8 @@ class Stance:
     wrenches: list[Array]
 
     def sides(self) -> StanceSides:
-        up, axes, arms = self._posed
+        root, axes, arms = self._posed
+        up = root[:, 2]
         level = np.eye(3) - up[:, :, None] * up[:, None, :]
         found, force = np.zeros((len(up), len(self.robot.feet), 6, 3)), np.zeros((len(up), 3))
         for k, wrench in enumerate(self.wrenches):
@@ -112,11 +113,9 @@ class Stance:
 
     def world_wrenches(self) -> Stance:
         """What the sensors read if the columns hold their wrenches in the world's axes."""
-        carrier, mount = self.robot.frame(self.imu.placement)
-        imu = self.robot.tree.poses(self.positions)[0][carrier] @ mount.rotation
-        root = rotation_from_quaternion(self.orientation) @ imu.transpose(0, 2, 1)  # in the world
+        root, each, _ = self._posed
         turned = list[Array]()
-        for wrench, axes in zip(self.wrenches, self._posed[1], strict=True):
+        for wrench, axes in zip(self.wrenches, each, strict=True):
             parts = wrench.reshape(-1, 2, 3) @ (root @ axes.transpose(0, 2, 1))
             turned.append(parts.reshape(-1, 6))
         return self._feeling(turned)
@@ -129,20 +128,20 @@ class Stance:
 
     @cached_property
     def _posed(self) -> tuple[Array, list[Array], list[Array]]:
-        """Up (n, 3) by the IMU; of each foot's sensor its axes, and the moments about the centre of mass of unit forces
-        along them, (n, 3, 3) [m]; in the root link."""
+        """The root link's rotation in the world by the IMU; of each foot's sensor, in the root link, its axes, and the
+        moments about the centre of mass of unit forces along them; (n, 3, 3) each, the moments in m."""
         rotations, places = self.robot.tree.poses(self.positions)
         centre = centre_of_mass(self.robot.model, rotations, places)
         carrier, mount = self.robot.frame(self.imu.placement)
-        attitude = rotation_from_quaternion(self.orientation)
-        up = np.einsum("nij,nj->ni", rotations[carrier] @ mount.rotation, attitude[:, 2])
+        imu = rotations[carrier] @ mount.rotation
+        root = rotation_from_quaternion(self.orientation) @ imu.transpose(0, 2, 1)
         axes, arms = list[Array](), list[Array]()
         for foot in self.robot.feet.values():
             carrier, mount = self.robot.frame(foot.wrench.placement)
             at = places[carrier] + rotations[carrier] @ mount.translation
             axes.append((rotations[carrier] @ mount.rotation).transpose(0, 2, 1))
             arms.append(np.cross((at - centre)[:, None, :], axes[-1]))
-        return up, axes, arms
+        return root, axes, arms
 
 
 def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:

@@ -55,7 +55,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     sides = stance.sides()
     as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
     world = stance.world_wrenches().sides()
-    # The weight's share in torques of a foot that yields looks like torques of another size.
+    # Wrenches in other axes look like torques of another size.
     turning = world.moving < BETTER * sides.moving
     if not turning and (found := list(torque_unit(robot, log, sides))):
         # Moments of exchanged forces are so large that right torques look too small.
