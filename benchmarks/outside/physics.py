@@ -179,6 +179,7 @@ def _add_sole(
     holder = spec.body(foot.bush.link)
     sole = holder.add_body(name=f"{foot.name}.sole", pos=foot.bush.xyz, quat=_quaternion(foot.bush))
     sole.mass, sole.inertia, sole.explicitinertial = of_mass[0] * mass, 3 * [of_mass[1] * mass], True
+    sole.ipos = [0, 0, 0]  # MuJoCo puts it at twice the place of the body else
     slide = sole.add_joint(name=f"{foot.name}.z", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
     slide.stiffness[0], slide.damping[0] = rubber.stiffness, rubber.damping
     for axis, direction in AXES:

@@ -85,6 +85,30 @@ def test_a_swinging_foot_shows_what_hangs_below_its_sensor(robot: RobotModel) ->
     np.testing.assert_allclose(below, [part, part], atol=1e-5)
 
 
+def test_a_foot_that_still_carries_a_little_before_its_first_step_hides_nothing(robot: RobotModel) -> None:
+    """A robot that walks off takes the load off its foot slowly: half a second of it passed for inertia below."""
+    part = pin.Inertia(0.7, np.array([0.03, 0.01, -0.08]), np.diag([0.003, 0.004, 0.002]))
+    motion, equation = moved(robot, 0.3), Equation(robot.floating_model)
+    read = readings(robot, motion, part)
+    shifting = (TIME > 1.8) & (TIME < 2.3)  # of the right foot's second swing
+    read[shifting, 6:] += np.linspace(1.0, 0.0, shifting.sum())[:, None] * [2.0, 8.0, 20.0, 1.0, 0.5, 0.2]
+    rates: Motion = pinocchio_motion(robot.floating_model, equation.tree, *motion)
+    below = below_sensors(robot, equation, rates, read, PERIOD).parameters.reshape(-1, 10)
+    links = [robot.frame(foot.wrench.placement)[0] for foot in robot.feet.values()]
+    np.testing.assert_allclose(below[links], 2 * [part.toDynamicParameters()], atol=1e-4)
+
+
+def test_what_no_swing_shows_of_a_part_is_as_of_a_plate_of_the_sole_s_size(robot: RobotModel) -> None:
+    """A foot hardly turns while it swings, and strikes the floor with what turns it."""
+    below, _ = found(robot, 0.05, noise=0.05)
+    for own, foot in zip(below, robot.feet.values(), strict=True):
+        mass, moment = own[0], own[1:4]
+        along, across = np.ptp(foot.sole.polygon, axis=0)
+        plate = pin.Inertia.FromBox(mass, along, across, 0.0)
+        expected = pin.Inertia(mass, moment / mass, plate.inertia).toDynamicParameters()
+        np.testing.assert_allclose(own[4:], expected[4:], atol=0.5 * plate.inertia[0, 0])
+
+
 @pytest.mark.parametrize("load_zero", [-80.0, 80.0])
 def test_a_zero_as_large_as_what_a_foot_in_the_air_may_read_hides_no_swing(
     robot: RobotModel, load_zero: float

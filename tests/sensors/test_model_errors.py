@@ -6,13 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from example_robots import ICUB
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.uncertainty import Uncertainty
 from plantar.robot_guess import guess_robot_file
-from plantar.sensors.model_errors import drawn_imu_turns, drawn_parameter_errors
+from plantar.sensors.model_errors import LIGHT, drawn_imu_turns, drawn_parameter_errors, link_errors
 from plantar.twin.robots import hrp2
 
 
@@ -32,6 +33,29 @@ def test_draws_spread_as_the_robot_file_says() -> None:
 
 def test_an_exact_urdf_has_no_draws() -> None:
     assert len(drawn_parameter_errors(robot(0.0, 0.0))) == 0
+    assert len(link_errors(robot(0.0, 0.0))) == 0
+
+
+def test_links_errors_are_what_pinocchio_says_of_a_link_that_is_off() -> None:
+    told = robot(0.05, 0.005)
+    bodies = list(told.floating_model.inertias)[1:]
+    heavy = [place for place, body in enumerate(bodies) if body.mass > LIGHT * told.mass]
+    found = link_errors(told).reshape(4, len(heavy), len(bodies), 10)
+    for number, place in enumerate(heavy):
+        body = bodies[place]
+        assert not np.delete(found[:, number], place, axis=1).any()
+        np.testing.assert_allclose(found[0, number, place], 0.05 * body.toDynamicParameters(), atol=1e-12)
+        for axis, along in enumerate(np.eye(3)):
+            moved = pin.Inertia(body.mass, body.lever + 1e-6 * along, body.inertia).toDynamicParameters()
+            slope = (moved - body.toDynamicParameters()) / 1e-6
+            np.testing.assert_allclose(found[1 + axis, number, place], 0.005 * slope, atol=1e-6)
+
+
+def test_draws_and_links_errors_say_the_same() -> None:
+    told = robot(0.05, 0.005)
+    spread = np.sqrt(np.sum(link_errors(told) ** 2, axis=0))
+    large = spread > 0.02 * spread.max()
+    np.testing.assert_allclose(np.std(drawn_parameter_errors(told), axis=0)[large], spread[large], rtol=0.4)
 
 
 def test_every_recording_meets_the_same_wrong_robots() -> None:

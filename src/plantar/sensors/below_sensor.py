@@ -16,15 +16,20 @@ from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, Mask
 from plantar.dynamics import Contact, Equation
 from plantar.dynamics.equation import ALL_PARAMETERS, BASE_ROWS, PER_LINK
 from plantar.dynamics.motion import Motion
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.air_zero import air_zero
+from plantar.sensors.load_errors import APART
 
 IN_AIR = 0.1  # of the weight, that a foot in the air may read
 LANDING = 0.15  # s around contact: the low-pass smears it
 SHORTEST = 1.0  # s in the air: less is hardly more than the noise
 LEAST_NOISE = 1e-3  # N, N.m: a dead sensor reads without any
 WORSE = 1.1  # times the squares of what Newton's law misses: by less, chance tells
-REWEIGHTED = 2  # times: forces and torques are weighed by what is left of them
+REWEIGHTED = (
+    10  # times: each row is weighed by what is left of it as a rule, each sample by what is left in it
+)
+HALF = 0.455  # of a normal error's variance: the median of its squares
+STRAY = 3.0  # times what is left as a rule: a foot that still carries a little, as before a first step, is no swing
 
 
 class BelowSensors(NamedTuple):
@@ -61,10 +66,13 @@ def below_sensors(
         carried = equation.base_transfer(aloft.positions, contact)
         read = (carried @ own[swings][:, :, None])[..., 0]
         radius = np.sqrt(np.trace(body.matrix()[TORQUE, TORQUE]) / (2 * body.mass))
-        sizes = body.mass * radius ** np.repeat([0, 1, 2], [1, 3, 6])
+        plate = _plate(foot)
+        sizes = body.mass * np.repeat([1.0, radius, np.trace(plate) / 3], [1, 3, 6])
         largest = IN_AIR * robot.mass * GRAVITY
         columns = np.concatenate([-inertia, carried], axis=2)
-        values = _least_squares(columns, read, np.append(sizes, np.full(6, largest)))
+        values = _least_squares(
+            columns, read, np.append(sizes, np.full(6, largest)), plate, min(period / APART, 1.0)
+        )
         parameters[contact.link] += values[:PER_LINK]
         zeros[place] = values[PER_LINK:]
     return BelowSensors(parameters.ravel(), zeros.ravel())
@@ -92,12 +100,38 @@ def _in_air(reading: Array, weight: float, period: float) -> Mask:
     return np.asarray(~widened(touching, round(LANDING / period)))
 
 
-def _least_squares(columns: Array, read: Array, sizes: Array) -> Array:
-    """Coefficients (k,) of `columns` (n, 6, k) for `read` (n, 6); `sizes` (k,): their deviations before it."""
-    weights, scaled = np.ones(6), columns * sizes
+def _plate(foot: Foot) -> Array:
+    """Rotational inertia (3, 3) for each kilogram of a plate as large as the sole, about its middle, in its link's axes
+    [m²]."""
+    along, across = np.ptp(foot.sole.polygon, axis=0) ** 2 / 12
+    turn = foot.sole.placement.rotation
+    return np.asarray(turn @ np.diag([across, along, along + across]) @ turn.T)
+
+
+def _least_squares(columns: Array, read: Array, sizes: Array, plate: Array, share: float) -> Array:
+    """Coefficients (k,) of `columns` (n, 6, k) for `read` (n, 6), of which a `share` is independent.
+
+    `sizes` (k,): deviations of the coefficients before it from nothing, of a rotational inertia from a `plate`'s (3, 3)
+    for each kilogram: a foot hardly turns while it swings, and what no swing shows is needed where it lands.
+    """
+    weights, scaled, usual = np.ones((1, 6)), columns * sizes, np.zeros(len(sizes))
     for _ in range(REWEIGHTED):
-        weighed = weights[:, None] * scaled
+        weighed = weights[..., None] * scaled
         normal = np.tensordot(weighed, scaled, ((0, 1), (0, 1))) + np.eye(len(sizes))
-        values = np.linalg.solve(normal, np.tensordot(weighed, read, ((0, 1), (0, 1))))
-        weights = 1 / (LEAST_NOISE**2 + np.mean((read - scaled @ values) ** 2, axis=0))
-    return np.asarray(sizes * values)
+        values = sizes * np.linalg.solve(
+            normal, np.tensordot(weighed, read, ((0, 1), (0, 1))) + usual / sizes
+        )
+        left = (read - columns @ values) ** 2
+        rule = LEAST_NOISE**2 + np.median(left, axis=0) / HALF
+        strays = np.mean(left / rule, axis=1, keepdims=True) / STRAY**2
+        weights = share / (rule * (1 + strays) ** 2)
+        usual[4:PER_LINK] = _inertia_about_origin(values[0], values[1:4], plate)
+    return np.asarray(values)
+
+
+def _inertia_about_origin(mass: float, moment: Array, plate: Array) -> Array:
+    """The six of a plate of `mass` whose mass times place is `moment` (3,), in Pinocchio's order; zeros of no mass."""
+    if mass <= 0:
+        return np.zeros(6)
+    whole = mass * plate + (moment @ moment * np.eye(3) - np.outer(moment, moment)) / mass
+    return np.asarray(whole[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -9,6 +10,7 @@ import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.dynamics import Equation
+from plantar.dynamics.equation import PER_LINK
 from plantar.dynamics.inertial_motion import InertialSignals, turned_motions
 from plantar.robot.model import RobotModel
 
@@ -16,6 +18,7 @@ from plantar.robot.model import RobotModel
 # in all logs of a robot.
 DRAWS = 48
 TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
+LIGHT = 0.002  # of the robot's mass: a twentieth of it is no more than what a force sensor's noise is
 SEED = 0  # the same draws for every recording: the robot is the same
 
 
@@ -26,6 +29,23 @@ def drawn_parameter_errors(robot: RobotModel) -> Array:
     it, and its centre of mass by `uncertainty.link_com` [m] along each axis. No draws where both are zero.
     """
     return _drawn(robot.floating_model, robot.uncertainty.link_mass, robot.uncertainty.link_com)
+
+
+def link_errors(robot: RobotModel) -> Array:
+    """What one deviation of a link's mass, and of its centre of mass along each axis, adds to the inertial parameters,
+    (k, 10 n_links), as `drawn_parameter_errors` draws them. Links that weigh nearly nothing have none."""
+    uncertainty, bodies = robot.uncertainty, list(robot.floating_model.inertias)[1:]
+    masses, centres, inertias = _inertias(bodies)
+    own = [uncertainty.link_mass * _parameters(masses, centres, inertias)]
+    for by in uncertainty.link_com * np.eye(3):
+        # Half of the difference of both directions: what is quadratic in the shift drops out.
+        ends = [_parameters(masses, centres + shift, inertias) for shift in (by, -by)]
+        own.append((ends[0] - ends[1]) / 2)
+    heavy = np.flatnonzero(masses > LIGHT * robot.mass)
+    errors = np.zeros((len(own), len(heavy), len(bodies), PER_LINK))
+    errors[:, np.arange(len(heavy)), heavy] = np.array(own)[:, heavy]
+    rows = errors.reshape(len(own) * len(heavy), -1)
+    return np.asarray(rows[rows.any(axis=1)])
 
 
 def drawn_imu_turns(robot: RobotModel) -> Array:
@@ -50,15 +70,20 @@ def imu_turn_slopes(
 @lru_cache(maxsize=1)  # every log asks for those of the one robot
 def _drawn(model: pin.Model, mass: float, centre: float) -> Array:
     if mass == 0 and centre == 0:
-        return np.zeros((0, 10 * (model.njoints - 1)))
+        return np.zeros((0, PER_LINK * (model.njoints - 1)))
     bodies = list(model.inertias)[1:]
-    masses = np.array([body.mass for body in bodies])
-    centres, inertias = np.array([body.lever for body in bodies]), np.array([body.inertia for body in bodies])
+    masses, centres, inertias = _inertias(bodies)
     random = np.random.default_rng(SEED).standard_normal((DRAWS, len(bodies), 4))
     shares = np.maximum(1 + mass * random[..., 0], 0.0)
     moved = centres + centre * random[..., 1:]
     drawn = _parameters(shares * masses, moved, shares[..., None, None] * inertias)
     return np.asarray((drawn - _parameters(masses, centres, inertias)).reshape(DRAWS, -1))
+
+
+def _inertias(bodies: Sequence[pin.Inertia]) -> tuple[Array, Array, Array]:
+    """Masses (n,), centres of mass (n, 3) and rotational inertias about them (n, 3, 3)."""
+    masses, centres = np.array([body.mass for body in bodies]), np.array([body.lever for body in bodies])
+    return masses, centres, np.array([body.inertia for body in bodies])
 
 
 def _parameters(mass: Array, centre: Array, inertia: Array) -> Array:

@@ -41,8 +41,9 @@ class TorqueGain(NamedTuple):
     @property
     def reach(self) -> float:
         """By which share any foot's torque may be off: all that is missing is one foot's, where none is known apart."""
-        alone = len(self.shares) * (abs(self.mean) + NORMAL95 * self.std)
-        return max(map(abs, self.shares.values())) if self.apart else alone
+        beyond = NORMAL95 * self.std
+        alone = len(self.shares) * (abs(self.mean) + beyond)
+        return max(map(abs, self.shares.values())) + beyond if self.apart else alone
 
 
 def torque_gains(robot: RobotModel, fit: MomentFit | None) -> dict[Axis, TorqueGain]:
@@ -68,7 +69,7 @@ def torque_gains(robot: RobotModel, fit: MomentFit | None) -> dict[Axis, TorqueG
     # An amplifier, a unit or a place is wrong about both axes: the other one is in doubt unless it looks right itself.
     if about.any():
         wrong_by = shares[:axes][about].mean()
-        about |= ~apart & (shares[:axes] * wrong_by > ALSO * wrong_by**2)
+        about |= shares[:axes] * wrong_by > ALSO * wrong_by**2
     return {
         axis: TorqueGain(
             _share(shares[place]),

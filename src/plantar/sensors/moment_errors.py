@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -14,8 +15,8 @@ from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Foot, RobotModel
-from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.model_errors import drawn_parameter_errors, imu_turn_slopes
+from plantar.sensors.load_errors import APART, LEAST_GAIN
+from plantar.sensors.model_errors import imu_turn_slopes, link_errors
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
@@ -27,7 +28,7 @@ LEAST_BETWEEN = 0.001  # N.m/N, likewise
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
-LATE_TORQUES = 0.005  # s, of torques behind the forces of the same sensors: mostly read together
+LATE_TORQUES = 0.01  # s, of torques behind the forces of the same sensors: mostly read together
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
 ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
@@ -35,36 +36,56 @@ ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far 
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
 
 
-@dataclass(frozen=True)
-class MomentErrors:
-    """One log's `columns` (rows, k, n), and what they must add up to, `missing` (rows, n).
+class MomentErrors(NamedTuple):
+    """What one log's rows of Newton's law miss and the columns that may explain it, multiplied with each other.
 
-    The first axis is the six rows of Newton's law, or, of a log without an accelerometer, the moments about the centre
-    of mass: how the robot accelerates does not enter them.
+    The rows are the six of Newton's law, or, of a log without an accelerometer, the moments about the centre of mass:
+    how the robot accelerates does not enter them. `products` (rows, parts, c + 1, c + 1) are those of what is missing,
+    then its columns, in each part of the log without what the sensors' noise adds to them; `power` (rows, c + 1,
+    c + 1) their means over all samples, with it. `share`: of a sample, that counts as an independent one.
 
     The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else
     each foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the
-    encoders, of the gyroscope, and of all torques about pitch and about roll behind the forces. Behind them stand
-    the log's own zeros of each channel of each foot, with deviations `zeros` (z,): at an arm that moves with the
-    robot, a zero does not stay a constant. `products` (parts, rows, k + 1, k + 1) are those of missing and columns in
-    each part of the log, without what the sensors' noise adds to them; `drawn` (rows, k, draws) those of columns and
-    what a wrong URDF adds; `independent` is the share of samples [each `period` s] that are.
+    encoders, of the gyroscope, and of all torques about pitch and about roll behind the forces. Behind them stands
+    what one deviation of the URDF's links adds, and the log's own zeros of each channel of each foot, with deviations
+    `zeros` (z,): at an arm that moves with the robot, a zero does not stay a constant.
     """
 
-    columns: Array
-    missing: Array
     products: Array
-    drawn: Array
-    period: float
-    independent: float
+    power: Array
+    share: float
     zeros: Array
 
 
-def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
-    """The columns of one log in which Newton's law closes; `steps`: whether feet step in it.
+class MomentRow(NamedTuple):
+    """One row of Newton's law: `signals` (n, c + 1) each `period` [s] are what it misses and its columns; `noise`
+    (n, k) what of the first k of them is too quick to be the robot's, None of a walk."""
 
-    Of a standing robot what is slower than BAND, without what the sensors' noise does to it. A walk moves faster, and
-    so strongly that noise is small beside it.
+    signals: Array
+    period: float
+    noise: Array | None
+
+
+def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
+    """Of one log in which Newton's law closes; `steps`: whether feet step in it."""
+    products, power, share = [], [], 0.0
+    for row in moment_rows(robot, residual, steps):
+        stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * row.period)))
+        own = row.signals[::stride]
+        products.append(_products(own))
+        power.append(products[-1].sum(axis=0) / len(own))
+        share = stride * row.period / APART
+        if row.noise is not None:  # slopes are smooth: their noise is not white, and small below BAND
+            noisy = row.noise.shape[1]
+            below = _below_to_above(row.period) / stride
+            products[-1][:, :noisy, :noisy] -= below * _products(row.noise)
+    return MomentErrors(np.array(products), np.array(power), share, _zero_deviations(robot))
+
+
+def moment_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> Iterator[MomentRow]:
+    """Row by row: all at once would be the largest array of any log.
+
+    Of a standing robot what is slower than BAND. A walk moves faster, and so strongly that noise is small beside it.
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
     equation, period = equation_of(robot.floating_model), residual.pair.period
@@ -82,39 +103,21 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
     by_motion = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
-    slopes = [*(_about(centre, rows) for rows in by_motion), *by_torques, *zeros]
-    errors = _about(centre, equation.base_wrenches(motion, drawn_parameter_errors(robot)))
+    by_links = _about(centre, equation.base_wrenches(motion, link_errors(robot)))
+    slopes = [*(_about(centre, rows) for rows in by_motion), *by_torques, *by_links, *zeros]
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
     (predicted,) = _about(centre, equation.base_wrenches(motion, residual.parameters[None]))
     missing = predicted - np.sum([one.measured for one in read], axis=0)
     del residual, motion  # of all samples
-    band = CUTOFF if steps else BAND
-    stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
-    share = _below_to_above(period) / stride
-    columns, products, drawn = [], [], []
-    # Row by row: all at once would be the largest array of any log.
     for row in range(6) if centre is None else range(6)[TORQUE]:
         signals = [missing[:, row], *_in_order([one.columns(row) for one in read])]
-        noisy, count = len(signals), len(signals) + len(slopes)
-        signals += [one[:, row] for one in (*slopes, *errors)]
+        noisy = len(signals)
+        signals += [one[:, row] for one in slopes]
         # Without what postures and drifting zeros do to them.
         quick = without_slow_cosines(np.column_stack(signals), period, SLOW)
         slow = quick if steps else low_pass(quick, period, BAND)
-        own = slow[::stride].T
-        columns.append(own[:count].copy())
-        drawn.append(columns[-1][1:] @ own[count:].T)
-        products.append(_products(columns[-1]))
-        if not steps:  # slopes are smooth: their noise is not white, and small below BAND
-            noise = quick[:, :noisy] - slow[:, :noisy]
-            products[-1][:, :noisy, :noisy] -= share * _products(noise.T)
-    told, period = np.array(columns), stride * period
-    # A filtered signal has two independent samples in a period of its cutoff.
-    independent, zero_deviations = 2 * band * period, _zero_deviations(robot)
-    between = np.stack(products, axis=1)
-    return MomentErrors(
-        told[:, 1:], told[:, 0], between, np.array(drawn), period, independent, zero_deviations
-    )
+        yield MomentRow(slow, period, None if steps else quick[:, :noisy] - slow[:, :noisy])
 
 
 def _about(centre: Array | None, rows: Array) -> Array:
@@ -126,12 +129,12 @@ def _about(centre: Array | None, rows: Array) -> Array:
 
 
 def _products(columns: Array) -> Array:
-    """Of columns (k, n) with each other, in each part of the log, (parts, k, k)."""
-    return np.array([part @ part.T for part in np.array_split(columns, PARTS, axis=1)])
+    """Of columns (n, k) with each other, in each part of the log, (parts, k, k)."""
+    return np.array([part.T @ part for part in np.array_split(columns, PARTS)])
 
 
 def prior_deviations(robot: RobotModel) -> Array:
-    """Deviations of the columns' coefficients before the moments are asked, (k,)."""
+    """Deviations of the sensors' coefficients before the moments are asked, (k,): of all columns before the links'."""
     feet = len(robot.feet)
     of_feet = np.tile(_sensor_errors(robot)[1], feet)
     late = [*np.full(feet + 2, LATE), *np.full(2, LATE_TORQUES)]
