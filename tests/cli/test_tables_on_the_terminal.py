@@ -10,8 +10,8 @@ import pytest
 from rich.console import Console
 
 from plantar.cli.compare import _cells
-from plantar.cli.fleet.report import print_alarms
 from plantar.cli.fleet import run as fleet_run
+from plantar.cli.fleet.report import print_alarms
 from plantar.cli.fleet.run import _reporter
 from plantar.cli.identify.dynamics_tables import print_inertia
 from plantar.cli.identify.feet_tables import print_feet
