@@ -66,6 +66,8 @@ void an_element_is_seen_where_it_is_worth_it() {
     check::near(sway.watch.values().value[SLIP_TORQUE], share * WORTH, 0.05 * WORTH, "its torque");
     check::that(sway.watch.seen() == (share > 1.0), "more than a twentieth of the stiffness");
     check::that(sway.watch.excluded() == (share < 1.0), "or less, and surely");
+    sway.watch.restart();
+    check::that(!sway.watch.seen(), "forgotten");
   }
 }
 
@@ -120,7 +122,32 @@ void a_way_is_one_block_s() {
   check::that(!apart.watch.excluded(), "28 mrad in each, however far apart");
 }
 
+// Rubber that has a memory in every other block: of small motions the groups' scatter counts, of large ones the rows'.
+void groups_that_differ_show_none_in_small_motions() {
+  for (const double size : {0.0145, 0.02}) {
+    Sway sway{size};
+    for (int block = 0; block < 8; ++block) {
+      sway.slip = block % 2 ? 8.0 * WORTH : 0.0;
+      sway.go(400), sway.watch.close();
+    }
+    const AxisValues& found = sway.watch.values();
+    const double torque = found.value[SLIP_TORQUE];
+    check::that(torque > 4.0 * found.resolved[SLIP_TORQUE] && torque > WORTH, "rows that scatter little");
+    check::that(torque < 4.0 * found.std[SLIP_TORQUE], "groups that differ");
+    check::that(sway.watch.seen() == (size > 0.015), "large motions alone show it");
+  }
+}
+
+void the_longest_way_counts() {
+  Sway sway{0.02};
+  sway.go(400), sway.watch.close();
+  sway.size = 0.012, sway.go(2000);
+  check::that(sway.watch.excluded(), "what was moved far stays tested");
+}
+
 void run() {
+  groups_that_differ_show_none_in_small_motions();
+  the_longest_way_counts();
   it_is_excluded_by_motions_that_would_have_shown_it();
   an_element_is_seen_where_it_is_worth_it();
   both_verdicts_are_sure();

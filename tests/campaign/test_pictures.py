@@ -64,3 +64,34 @@ def test_figures_are_drawn_of_the_motions_that_were_recorded(monkeypatch: pytest
 )
 def test_limbs_have_a_side_and_the_trunk_has_none(body: str, side: str) -> None:
     assert side_of(body) == side
+
+
+@pytest.mark.parametrize("hand", [None, "chest"])
+def test_a_locus_says_how_near_it_came_and_who_measured(
+    hand: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The margin in millimetres, not its time; where an operator's hand moves the robot nothing was planned."""
+    measured = SimpleNamespace(
+        worst=lambda: (31.0, 0.0124), outlines={"left": 1}, zmp="measured", polygon="both"
+    )
+    asked: dict[str, object] = {}
+
+    def balance(robot: object, log: object, stance: object) -> object:
+        asked.update(log=log, stance=stance)
+        return measured
+
+    monkeypatch.setattr(
+        pictures, "planned", lambda motion, robot: SimpleNamespace(hand=hand, stance="stance")
+    )
+    monkeypatch.setattr(pictures, "measured_balance", balance)
+    monkeypatch.setattr(pictures, "planned_balance", lambda robot, plan: SimpleNamespace(zmp="planned"))
+    monkeypatch.setattr(pictures, "zmp", lambda *given: given)
+    monkeypatch.setattr(pictures, "zmp_planned", lambda *given: given)
+    campaign = SimpleNamespace(robot=None, logs={"Tilt1": "log", "Tilt3": "other"})
+    plate = pictures._locus(campaign, "Tilt1", 4, "a")  # type: ignore[arg-type]
+    assert asked == {"log": "log", "stance": "stance"}
+    assert plate.caption.startswith("At least 12 mm inside the support polygon. Measured by the f")
+    assert ("inverse dynamics" in plate.caption) == (hand is None)
+    assert plate.title == "Figure 4a. Zero-moment point of Tilt1."
+    planned_too = () if hand else ("planned",)
+    assert plate.drawing == ("measured", *planned_too, {"left": 1}, "both")

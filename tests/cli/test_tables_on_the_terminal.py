@@ -10,6 +10,7 @@ import pytest
 from rich.console import Console
 
 from plantar.cli.compare import _cells
+from plantar.cli.fleet import run as fleet_run
 from plantar.cli.fleet.report import print_alarms
 from plantar.cli.fleet.run import _reporter
 from plantar.cli.identify.dynamics_tables import print_inertia
@@ -261,6 +262,20 @@ def test_progress_counts_what_is_done_and_what_was_there() -> None:
     report = _reporter(said.append)
     report(Progress(9, 2, 6, 1, 30.0))
     assert said == ["8 of 9 groups done, 2 of them there already, 1 failed, 30 s left"]
+
+
+@pytest.mark.parametrize(("terminal", "shown"), [(False, [0, 5, 9]), (True, [0, 1, 5, 6, 9])])
+def test_progress_in_a_file_is_a_line_now_and_then_and_the_last(
+    terminal: bool, shown: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock, said = SimpleNamespace(now=1000.0), list[str]()
+    monkeypatch.setattr(fleet_run, "time", SimpleNamespace(monotonic=lambda: clock.now))
+    monkeypatch.setattr(fleet_run, "sys", SimpleNamespace(stderr=SimpleNamespace(isatty=lambda: terminal)))
+    report = _reporter(said.append)
+    for done, later in ((0, 0.0), (1, 4.9), (5, 0.2), (6, 4.9), (9, 0.0)):
+        clock.now += later
+        report(Progress(12, 1, done, 2, None))
+    assert said == [f"{done + 1} of 12 groups done, 1 of them there already, 2 failed" for done in shown]
 
 
 def test_how_much_of_a_log_was_used_adds_up_by_motion_and_foot() -> None:

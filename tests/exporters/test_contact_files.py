@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_mj
 from plantar.conventions import GRAVITY
 from plantar.errors import ExportError
 from plantar.exporters import export
+from plantar.exporters.contact import drake
+from plantar.exporters.contact.springs import RADIUS
 from usd_stage import write_usd
 
 TARGETS = ("drake-contact", "bullet-contact", "physx-contact")
@@ -210,3 +213,48 @@ def test_what_else_is_in_a_scene_does_not_stand_on_the_feet(
                 model=model,
             )
     assert asked[1] == asked[0] > 20 * GRAVITY
+
+
+@pytest.mark.parametrize("given", ["", "drake", "ode", "both"])
+def test_a_drake_point_rubs_as_what_it_takes_the_place_of(given: str, tmp_path: Path) -> None:
+    own = "<drake:proximity_properties><drake:mu_dynamic>0.6</drake:mu_dynamic></drake:proximity_properties>"
+    ode = "<surface><friction><ode><mu>0.7</mu></ode></friction></surface>"
+    told = {"": "", "drake": own, "ode": ode, "both": own + ode}[given]
+    model = write_sdf(tmp_path / "robot.sdf", "1.9")
+    head, foot, rest = model.read_text().partition("<collision name='foot'>")
+    head = head.replace("<sdf ", f'<sdf xmlns:drake="{DRAKE[1:-1]}" ', 1)
+    shape, end, rest = rest.partition("</collision>")
+    toe = f"<collision name='toe'>{shape}<surface><friction><ode><mu>0.3</mu></ode></friction></surface></collision>"
+    model.write_text(f"{head}{foot}{told}{shape}{end}{toe if told else ''}{rest}")
+    out = tmp_path / "out.sdf"
+    notes = export(result(write_urdf(tmp_path / "biped.urdf")), "drake-contact", out, model=model)
+    friction = {"": 1.0, "drake": 0.6, "ode": 0.7, "both": 0.6}[given]
+    assert points_of("drake-contact", out, "left")[:, 6] == pytest.approx(friction)
+    assert points_of("drake-contact", out, "right")[:, 6] == pytest.approx(1.0)
+    for shape in ET.parse(out).getroot().iter("collision"):
+        if "_contact_" in shape.get("name", ""):
+            mu, static = (
+                shape.findtext(f"{DRAKE}proximity_properties/{DRAKE}mu_{kind}")
+                for kind in ("dynamic", "static")
+            )
+            assert mu == static
+    said = [note.text for note in notes if "left out" in note.text]
+    assert said == [
+        f"{foot}: these shapes are left out, the points touch instead: {names}"
+        for foot, names in (("left", "foot, toe" if told else "foot"), ("right", "foot"))
+    ]
+    again = export(result(tmp_path / "biped.urdf"), "drake-contact", tmp_path / "again.sdf", model=out)
+    assert not [note for note in again if "left out" in note.text], "points of an earlier export"
+    (ground,) = (note.text for note in notes if note.code == "export_ground")
+    assert "1e+09 N/m or more" in ground
+
+
+@pytest.mark.parametrize(("push", "carried"), [(120.0, 120.0), (0.0, 1e-3 * 9000.0 * RADIUS)])
+def test_a_drake_point_damps_by_what_it_carries(push: float, carried: float) -> None:
+    """Of one that hardly touches, by what a thousandth of its radius would."""
+    ankle = ET.Element("link")
+    point = SimpleNamespace(stiffness=9000.0, damping=45.0)
+    drake._add(ankle, SimpleNamespace(point=point, name="p", centre=np.zeros(3), push=push), 0.6)  # type: ignore[arg-type]
+    said = {key: float(next(ankle.iter(f"{DRAKE}{key}")).text or "nan") for key in
+            ("point_contact_stiffness", "relaxation_time", "hunt_crossley_dissipation", "mu_static")}  # fmt: skip
+    assert list(said.values()) == pytest.approx([9000.0, 0.005, 45.0 / carried, 0.6])

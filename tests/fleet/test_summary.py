@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from datetime import date, timedelta
 
 import numpy as np
@@ -76,6 +77,9 @@ def test_plain_data_say_the_same(summary: FleetSummary) -> None:
     assert len(content["levels"]) == 12
     assert {alarm["seen"][:4] for alarm in content["alarms"]} == {"2026"}
     assert content["effects"][0]["units"] == 3
+    assert content["failures"] == [asdict(one) for one in summary.failures]
+    assert content["failures"][0]["count"] == 1
+    assert (content["groups"], len(content["alarms"])) == (summary.groups, len(summary.alarms))
 
 
 def test_the_page_shows_alarms_first_and_escapes_names(summary: FleetSummary) -> None:

@@ -158,3 +158,11 @@ def test_a_foots_angles_are_those_of_its_used_samples() -> None:
     rate = 0.02 * 2 * np.pi / np.sqrt(2)
     assert found.rate_rms == pytest.approx(dict.fromkeys(("pitch", "roll"), rate), rel=0.05)
     assert (found.double, found.single, found.serving) == pytest.approx((20.0, 20.0, 19.9), abs=0.02)
+
+
+@pytest.mark.parametrize(("missing", "load"), [(0.0, 345.0), (0.25, 340.0), (1.0, 0.0)])
+def test_a_foots_load_is_that_of_the_samples_that_have_one(missing: float, load: float) -> None:
+    made, count = made_recording("sway", np.zeros(400), np.zeros(400)), np.arange(400)
+    force = np.where(count < 100, 360.0, 340.0)
+    state = replace(made.bushes[FOOT], force_z=np.where(count < 400 * missing, np.nan, force))
+    assert _foot(replace(made, bushes={FOOT: state}), FOOT).load == pytest.approx(load)

@@ -115,6 +115,19 @@ def test_other_native_steps_are_another_key(monkeypatch: pytest.MonkeyPatch) -> 
     assert after != before
 
 
+@pytest.mark.parametrize("part", ["FILES", "PACKAGES", "version"])
+def test_other_files_or_packages_are_another_key(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    cache._code.cache_clear()
+    before = cache.key("x")
+    monkeypatch.setattr(
+        cache, part, (lambda package: "0.0") if part == "version" else getattr(cache, part)[1:]
+    )
+    cache._code.cache_clear()
+    after = cache.key("x")
+    cache._code.cache_clear()
+    assert after != before
+
+
 def test_a_damaged_file_counts_as_none(own_folder: Path) -> None:
     cache.save("k", {"a": np.arange(5.0)})
     file = own_folder / "k.npz"

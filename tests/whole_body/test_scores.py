@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -103,3 +105,15 @@ def test_unseen_motions_that_the_urdf_predicts_better_are_told() -> None:
         assert [note.code for note in notes] == told * ["worse_than_urdf"]
         assert all("still: force.x: 3.08 against 1 N rms" in note.text for note in notes)
         assert all("torque.y" not in note.text for note in notes)
+
+
+def test_of_many_rows_that_are_worse_six_are_named() -> None:
+    still = samples("still", [1.0, -1.0, 1.0, -1.0], [9.0, 9.0, 9.0, 9.0])
+    row = next(
+        one
+        for one in scored(FIT, [SEEN], [still], (Place(0, "N", axis="force.x"),))[0]
+        if one.kind == "cross"
+    )  # type: ignore[arg-type]
+    (note,) = worse_notes([replace(row, motion=f"m{place}") for place in range(9)])
+    assert re.findall(r"m\d", note.text) == ["m0", "m1", "m2", "m3", "m4", "m5"]
+    assert "3 more" in note.text

@@ -136,7 +136,7 @@ void AxisRegression::close() noexcept {
 
 void AxisRegression::take(const Part& part) noexcept {
   if (groups_[current_].time >= group_time_) {
-    if (!full_ && used_ == MOST_GROUPS && group_time_ < LARGEST_GROUP) merge_pairs();
+    if (used_ == MOST_GROUPS && group_time_ < LARGEST_GROUP) merge_pairs();  // else each is full
     current_ = (current_ + 1) % MOST_GROUPS;
     full_ = full_ || used_ == MOST_GROUPS;
     used_ = std::min(used_ + 1, MOST_GROUPS);

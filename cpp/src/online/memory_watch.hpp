@@ -38,7 +38,7 @@ class MemoryWatch {
   void work() noexcept {
     regression_.work();
     const AxisValues& found = regression_.values();
-    const bool tested = way_ > TESTING_WAY && found.groups >= FEWEST_GROUPS;
+    const bool tested = way_ > TESTING_WAY;
     const double torque = found.value[SLIP_TORQUE], least = WORTH_OF_MEMORY * SUSPECTED_ANGLE * found.value[STIFFNESS];
     // Where one motion alone has gone far, leaving it out says nothing: the rows' scatter has to do.
     const double resolved = found.resolved[SLIP_TORQUE];

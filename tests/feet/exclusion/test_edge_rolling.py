@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from plantar.feet.exclusion.edge_rolling import leaning, without_edge_rolling
+from made_recording import FOOT, made_recording
+from made_recording import PERIOD as STEP
+from made_recording import swayed as two_sines
+from plantar.feet.exclusion.edge_rolling import NEAR, _bush_model, leaning, without_edge_rolling
 from plantar.feet.prepare_log import prepare
 from plantar.feet.recording import filtered_recording
 from plantar.feet.settings import FeetSettings
@@ -156,3 +159,23 @@ def test_the_middle_of_a_narrow_sole_is_not_its_edge(robot: RobotModel, width: f
     )
     (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
     assert (rest.used("left")[~near].mean() > 0.9) == used
+
+
+@pytest.mark.parametrize(("stiffness", "known"), [(400.0, True), (-400.0, False)])
+def test_a_bush_is_known_from_what_is_clear_of_edges(stiffness: float, known: bool) -> None:
+    """Its torque is another one up to NEAR from an edge; two recordings' zeros, of 3 and 4 N.m, are usually 3.5."""
+    place = np.arange(3000)
+    edge = np.abs(place - 1500) < 100
+    off = np.abs(place - 1500) < 100 + round(NEAR / STEP) - 1
+    made = []
+    for seed, zero in enumerate((3.0, -4.0)):
+        angle = two_sines(seed=seed)
+        torque = stiffness * angle + 12.0 * np.gradient(angle, STEP) + zero
+        made.append(made_recording(f"sway_{seed}", angle, np.where(off, 0.0, torque)))
+    found = _bush_model(made, FOOT, [edge, edge])
+    assert (found is not None) == known
+    if found is not None:
+        assert found[0] == pytest.approx([400.0, 400.0])
+        assert found[1] == pytest.approx([12.0, 12.0])
+        assert found[2] == pytest.approx(np.sqrt(12.5))
+    assert _bush_model(made, FOOT, [place >= 0, place >= 0]) is None

@@ -153,3 +153,18 @@ def test_a_centre_of_pressure_outside_of_an_edge_moves_the_opposite_one(samples:
     depth = np.full((3000, 4), 0.05)
     depth[500 : 500 + samples, 0] = -0.002
     assert moved_inwards(recording, FOOT, depth, square).max(axis=0).max() == pytest.approx(moved)
+
+
+@pytest.mark.parametrize(("deviations", "leans"), [(3.5, True), (4.5, False)])
+def test_a_small_lean_counts_within_four_usual_deviations_of_where_the_pressure_stops(
+    deviations: float, leans: bool
+) -> None:
+    """Moments stop at -0.1, 0 and 0.1 N.m in turn, a deviation of 0.148; a later visit leans by 4.5 mrad."""
+    sure, later = (ROWS >= 1000) & (ROWS < 1060), (ROWS >= 1400) & (ROWS < 1460)
+    wander = 0.001 * np.tile(np.repeat([0.0, 1.0], 20), 50)
+    excess = np.column_stack([0.01 * sure + 0.0045 * later + wander, 0.0 * ROWS])
+    moment = np.where(sure, 0.1 * (ROWS % 3 - 1), np.where(later, 0.14826 * deviations, 20.0))
+    load = np.full(2000, LOAD)
+    found = leaning(excess, moment / LOAD, load, sure | later, ROWS >= 0, PERIOD)
+    assert found[sure].all()
+    assert (found[later].all(), found[later].any()) == (leans, leans)

@@ -192,3 +192,36 @@ def test_what_a_choice_of_models_is_asked(steps: bool, offset: str, monkeypatch:
     assert asked["cutoff"] == made[0].cutoff
     if steps:
         assert {one.steps.share for one in asked["sets"]} != {0.0}
+
+
+@pytest.mark.parametrize(
+    ("steps", "short", "timed"), [(0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 1), (1, 1, 0), (1, 0, 1)]
+)
+def test_a_standing_foot_whose_runs_are_short_is_torn(
+    steps: bool, short: bool, timed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, stances = recordings(SLIPPING), Stances(np.arange(6000) // 200, np.ones(6000))
+    if steps:
+        made = [replace(one, stances={FOOT: stances}) for one in made]
+        for one in made:
+            one.raw[FOOT].torque[:, 1] = 0.0
+    asked: dict[str, Any] = {}
+
+    def tell(choice: Any, **named: Any) -> None:
+        asked.update(named)
+        raise Asked
+
+    def choose(data_sets: Any, models: Any, cutoff: float, **named: Any) -> None:
+        asked["remember"] = any(model.remembers for model in models)
+
+    monkeypatch.setattr(axis_fit, "choose_model", choose)
+    monkeypatch.setattr(axis_fit, "_remembers", lambda data_sets: not short)
+    monkeypatch.setattr(axis_fit, "cautioned", tell)
+    with pytest.raises(Asked):
+        fit_axis(made, FOOT, "pitch", FeetSettings(), timed=bool(timed))
+    assert asked == {
+        "timed": bool(timed),
+        "steps": bool(steps),
+        "torn": bool(short and not steps),
+        "remember": bool(timed) if steps else not short,
+    }

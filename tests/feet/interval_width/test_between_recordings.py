@@ -277,3 +277,19 @@ def test_an_axis_about_which_a_foot_hardly_turns_says_nothing_of_recordings(size
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
     assert (axis_differences(fit, recordings, False) is not None) == told
+
+
+@pytest.mark.parametrize("shared", [False, True])
+def test_a_drift_is_beside_offsets_of_each_recording_alone(
+    shared: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[bool] = []
+
+    def blocks(recordings: object, fit: object, *, drift: bool) -> list[object]:
+        told.append(drift)
+        return []
+
+    monkeypatch.setattr("plantar.feet.interval_width.between_recordings.tangent_blocks", blocks)
+    monkeypatch.setattr("plantar.feet.interval_width.between_recordings._comparable", lambda *given: False)
+    assert axis_differences(None, [], shared) is None  # type: ignore[arg-type]
+    assert told == [not shared]

@@ -12,7 +12,7 @@ from made_recording import FOOT, made_recording, swayed
 from plantar.estimation import fit_blocks
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.interval_width.between_recordings import axis_differences, recordings_apart
-from plantar.feet.interval_width.yaw_zero import fit_beside, yaw_zeros
+from plantar.feet.interval_width.yaw_zero import fit_beside, yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, tangent_blocks
@@ -78,3 +78,19 @@ def test_zeros_are_as_free_as_is_usual() -> None:
     held = fit_beside(zeros._replace(usual=usual), blocks)
     np.testing.assert_allclose(held[1], both[:size, :size], rtol=1e-6)
     np.testing.assert_allclose(held[0], (both @ known @ found.values[: size + 2])[:size], rtol=1e-6)
+
+
+def test_zeros_that_no_motion_shows_are_as_large_as_is_usual_and_move_no_value() -> None:
+    """A pitch that stays as it is: its zero cannot be told from the offset."""
+    recordings, fit = rolled(1.0)
+    blocks = tangent_blocks(recordings, fit)
+    zeros = yaw_zeros(fit, blocks, recordings)
+    assert zeros is not None
+    level = zeros._replace(columns=[0.1 * (each != 0) for each in zeros.columns])
+    plain = fit_blocks(blocks)
+    for found, right in zip(fit_beside(level, blocks), (plain.values, plain.covariance), strict=True):
+        np.testing.assert_allclose(found, right[:2] if right.ndim == 1 else right[:2, :2], rtol=1e-12)
+    influences = [np.ones((2, len(block.response))) for block in blocks]
+    cause = yaw_torque_zero(level, blocks, influences, False)
+    effect = [0.7 * np.sum(each, axis=0) for each in level.columns]
+    np.testing.assert_allclose(cause.effect, np.linalg.norm(np.sum(effect, axis=0)), rtol=1e-9)

@@ -295,3 +295,19 @@ def test_sqlite_rows_that_are_computed(messages: str, tmp_path: Path) -> None:
     connection.execute(messages)
     connection.close()
     assert "'messages' is not a plain table" in refusal(tmp_path / "log.db3")
+
+
+def test_stamps_and_samples_of_a_robot_logger_count_as_what_is_kept(tmp_path: Path) -> None:
+    """Single-precision numbers are kept as doubles: 8 bytes of each of 100 stamps and 300 values."""
+    with h5py.File(tmp_path / "log.mat", "w") as file:
+        group = file.create_group("signal")
+        group["timestamps"] = np.arange(100, dtype="f4")
+        group["data"] = np.zeros((100, 3), "f4")
+        for memory, fits in ((3200, True), (3199, False)):
+            limit = ReadLimit(tmp_path / "log.mat", memory=memory)
+            if fits:
+                robot_logger._signal(group, "signal", limit)
+                assert limit.unpacks_to - limit.left == 3200
+            else:
+                with pytest.raises(LogError, match="of samples or more"):
+                    robot_logger._signal(group, "signal", limit)
