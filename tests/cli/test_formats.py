@@ -61,7 +61,9 @@ def test_convert_several_logs_into_a_directory(
     assert sorted(path.name for path in (tmp_path / "all").iterdir()) == ["one.mcap", "two.mcap"]
     assert command("convert", *logs, "--out", tmp_path / "all.csv") == 1
     assert command("convert", logs[0], logs[0], "--out", tmp_path / "all") == 1
-    assert command("convert", logs[0], "--out", tmp_path / "log.xlsx") == 0  # a directory of that name
+    assert command("convert", logs[0], "--out", tmp_path / "log.xlsx") == 1
+    assert not (tmp_path / "log.xlsx").exists(), "no folder in the place of a file"
+    assert command("convert", logs[0], "--out", tmp_path / "of_2026.11") == 0  # a directory of that name
     assert command("convert", *logs, "--out", tmp_path / "all", "--to", "xlsx") == 1
     assert "csv, parquet, mcap" in capsys.readouterr().err
 

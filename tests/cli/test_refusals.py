@@ -86,7 +86,8 @@ def test_bad_robot_files_and_places(
     assert "is a file" in refused(capsys, "identify", "feet", campaign / "robot.yaml", log, "--out", robot)
     assert "is a file" in refused(capsys, "simulate", "Tilt3", "--out", robot)
     twice = ["identify", "feet", campaign / "robot.yaml", log, log, "--out", tmp_path / "out"]
-    assert "two logs are called 'first'" in refused(capsys, *twice)
+    assert "first.csv is given twice" in refused(capsys, *twice)
+    assert "given twice" in refused(capsys, *twice[:4], "--validate", log, *twice[-2:])
     assert "not such a result" in refused(
         capsys, "validate", write_json(tmp_path, {"schema": "x"}), campaign / "robot.yaml", log
     )

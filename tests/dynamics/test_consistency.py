@@ -9,6 +9,7 @@ import pytest
 from scipy import optimize, sparse
 
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
+from plantar.errors import DataError
 
 LOWER = np.tril_indices(4)
 
@@ -76,3 +77,28 @@ def test_the_solver_is_given_directions_of_one_size(monkeypatch: pytest.MonkeyPa
     found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-9, positive=())
     np.testing.assert_allclose(given, [np.ones(10)], rtol=1e-9)
     assert np.linalg.eigvalsh(pseudo_inertia(found))[0] > -1e-7
+
+
+def test_a_solver_that_stalls_is_asked_again_with_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a made log one of a hundred fits stalled in long steps: the command ended with the solver's word for it."""
+    solver, steps = clarabel.DefaultSolver, list[float]()
+
+    def stalls(*problem: object) -> object:
+        settings = problem[-1]
+        steps.append(settings.max_step_fraction)
+        settings.max_iter = 200 if steps[-1] < least else 2
+        return solver(*problem)
+
+    cad = pin.Inertia.FromEllipsoid(2.0, 0.3, 0.2, 0.25).toDynamicParameters()
+    prior = Prior.around(cad)
+    regressor = np.linalg.inv(prior.spread)
+    normal = Normal.of(regressor, regressor @ np.array([-1.0, *cad[1:]]), prior)
+    expected = consistent_fit(normal, prior, 1e-9, positive=())
+    monkeypatch.setattr(clarabel, "DefaultSolver", stalls)
+    least = 0.95
+    np.testing.assert_allclose(consistent_fit(normal, prior, 1e-9, positive=()), expected, atol=1e-5)
+    assert steps == sorted(set(steps), reverse=True)
+    assert len(steps) == 2
+    least = 0.0
+    with pytest.raises(DataError, match="did not converge"):
+        consistent_fit(normal, prior, 1e-9, positive=())

@@ -130,8 +130,15 @@ def test_a_joint_on_the_path_that_is_not_recorded_is_a_warning(
     robot: RobotModel, logs: list[MotionLog]
 ) -> None:
     found = identify_feet(robot, [without(logs[0], "left_ankle_roll")])
-    assert "path_joint_missing" in codes(found)
+    (text,) = (note.text for note in found.notes if note.code == "path_joint_missing")
+    assert "which the URDF has not" not in text
     assert_truth(found, 2e-3, feet=("right",))
+    misspelt = without(logs[0], "left_ankle_roll")
+    misspelt = misspelt.with_columns(
+        {"joint.left_ankel_roll.position": logs[0].column("joint.left_ankle_roll.position")}
+    )
+    notes = {note.code: note.text for note in identify_feet(robot, [misspelt]).notes}
+    assert "The log has left_ankel_roll, which the URDF has not" in notes["path_joint_missing"]
 
 
 def test_a_joint_off_the_path_may_be_missing(

@@ -14,6 +14,13 @@ from plantar.results.residuals import Track, read_residuals
 from report_samples import MOTIONS, write_campaign
 from report_visit import INK, Visit, launched
 
+LONG_REASON = """() => {
+    const tables = [...document.querySelectorAll("table")];
+    const cell = tables.find((one) => one.caption?.innerText.startsWith("What is used")).querySelector("td:last-child");
+    cell.innerText = "landing or lifting: just after or before a change of support (5.2 s); ".repeat(3);
+    return cell.getBoundingClientRect().height;
+}"""
+
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
@@ -148,6 +155,7 @@ def test_the_page_is_never_wider_than_the_window(browser: Any, report: Path, wid
     visit = Visit(browser, report, viewport={"width": width, "height": 800})
     visit.page.click("#open-all")
     assert visit.page.evaluate("document.documentElement.scrollWidth") <= width
+    assert visit.page.evaluate(LONG_REASON) < 150, "px: a row of some lines, not of one word each"
     host = visit.plot(1, "torque", "right", "pitch")
     assert host.evaluate("host => host.plot.width <= host.clientWidth")
     visit.context.close()

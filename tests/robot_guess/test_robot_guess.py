@@ -241,14 +241,14 @@ def test_the_bushs_height_shows_in_torque_and_force(tmp_path: Path) -> None:
 
 
 def test_a_log_that_contradicts_the_urdf_is_doubted(tmp_path: Path) -> None:
-    light = {
-        name: 0.6 * values if name.startswith("wrench.") else values
-        for name, values in record(LARGE).columns.items()
-    }
-    _, text = guessed(tmp_path, MotionLog("light", record(LARGE).time, light))
-    assert "# DOUBT: the feet carry 36" in text
-    _, text = guessed(tmp_path / "right", record(LARGE))
-    assert "# Seen: the feet carry 60" in text
+    for share, said in ((0.6, "# DOUBT: the feet carry 36"), (1.14, "# DOUBT: the feet carry 68"),
+                        (0.95, "# Seen: the feet carry 57"), (1.0, "# Seen: the feet carry 60")):  # fmt: skip
+        columns = {
+            name: share * values if name.startswith("wrench.") else values
+            for name, values in record(LARGE).columns.items()
+        }
+        _, text = guessed(tmp_path / f"{share}", MotionLog("light", record(LARGE).time, columns))
+        assert said in text
 
 
 def test_what_a_log_lacks_or_holds_twice_is_said(tmp_path: Path) -> None:

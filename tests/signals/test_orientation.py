@@ -7,7 +7,7 @@ import pytest
 
 from biped import record, sway
 from plantar.conventions import rotation_from_quaternion
-from plantar.errors import DataError
+from plantar.errors import DataError, LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -67,6 +67,15 @@ def test_an_imu_without_one_whole_sample_is_refused(robot: RobotModel) -> None:
     nothing = {"imu.chest.angular_velocity.x": np.full(len(log), np.nan)}
     with pytest.raises(DataError, match="imu 'chest' has no sample with all values"):
         asked(robot, without(log.with_columns(nothing), "orientation"))
+
+
+def test_an_imu_of_another_name_is_told_by_the_names_that_the_log_has(robot: RobotModel) -> None:
+    log = record(sway())
+    columns = {name.replace("imu.chest", "imu.my.base"): values for name, values in log.columns.items()}
+    with pytest.raises(
+        LogError, match=r"no orientation of imu 'chest'.*imu\.chest\.orientation\.w.*: my\.base\)"
+    ):
+        asked(robot, MotionLog("other", log.time, columns))
 
 
 def test_across_a_gap_nobody_knows_how_it_has_turned(robot: RobotModel) -> None:

@@ -17,12 +17,12 @@ from plantar.errors import PlantarError
 
 # verb -> (module of this package, one line of help), in the order in which they are listed; the module has `run`.
 COMMANDS = {
-    "demo": ("demo", "The paper's campaign on the built-in twin: tables, figures, report."),
+    "demo": ("demo", "Everything on a simulated robot whose feet are known: tables, figures, report."),
     "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
     "inspect": ("inspect", "What is in the logs, what is wrong with them, what they can identify."),
-    "identify feet": ("identify.feet", "Stiffness, damping and offset of each foot (eq. 4 to 7)."),
-    "identify inertia": ("identify.inertia", "Inertial parameters without joint torques (eq. 2)."),
-    "identify joints": ("identify.joints", "Friction, springs and offsets of the joints (eq. 3)."),
+    "identify feet": ("identify.feet", "Stiffness, damping and offset of each foot."),
+    "identify inertia": ("identify.inertia", "Inertial parameters without joint torques."),
+    "identify joints": ("identify.joints", "Friction, springs and offsets of the joints."),
     "validate": ("validate", "Score a result on logs that it has not seen."),
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
     "report": ("report", "Write the result's report.html again."),
@@ -31,7 +31,7 @@ COMMANDS = {
     "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
     "design": ("design", "A motion that identifies the feet well, within balance and limits."),
     "select": ("select", "Which of these logs are most informative about each parameter."),
-    "simulate": ("simulate", "Logs from the twin, with the imperfections that you choose."),
+    "simulate": ("simulate", "Logs from a simulated robot, with the imperfections that you choose."),
     "convert": ("convert", "A log in another format."),
     "fleet plan": ("fleet.plan", "A manifest from files: a group for each robot and day."),
     "fleet run": ("fleet.run", "Identify the feet of every group of a manifest, on a Dask cluster."),

@@ -47,6 +47,9 @@ def run(
 def _targets(logs: list[Path], out: Path, to: str) -> list[Path]:
     if len(logs) == 1 and out.suffix.lower() in ENDINGS:
         return [out]
+    if not (out.is_dir() or out.suffix.lower() in ("", *ENDINGS) or out.suffix[1:].isdigit()):
+        valid = f"a file ending in {', '.join(ENDINGS)}, or a folder"
+        raise PlantarError(f"ends in {out.suffix}, which convert does not write", path=out, valid=valid)
     if f".{to}" not in ENDINGS:
         raise PlantarError(f"--to {to} is not a format", valid=", ".join(e[1:] for e in ENDINGS))
     if out.suffix.lower() in ENDINGS or out.is_file():

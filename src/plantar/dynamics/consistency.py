@@ -24,6 +24,7 @@ from plantar.errors import DataError, needs
 ROUNDNESS = 4.0  # of the reference body: its radius of gyration squared over the link's own
 SMALLEST_RADIUS = 0.01  # m: of gyration; thinner links count as this thick
 SMALLEST_MASS = 1e-4  # kg
+STEPS = (0.99, 0.9, 0.7)  # shares of the way to a cone's border: shorter ones where the solver stalls
 FLOOR = 1e-5  # of the reference body: what every identified link keeps, so that simulators take it
 
 
@@ -131,17 +132,18 @@ def _constrained(square: Array, linear: Array, prior: Prior, places: Sequence[in
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
-    solution = clarabel.DefaultSolver(
-        sparse.csc_matrix(np.triu(square) / unit * np.outer(sizes, sizes)),
-        -linear / unit * sizes,
-        sparse.csc_matrix(cones * sizes),
-        offsets,
-        [clarabel.PSDTriangleConeT(4)] * len(prior.widths) + [clarabel.NonnegativeConeT(len(places))],
-        settings,
-    ).solve()
-    if str(solution.status) not in ("Solved", "AlmostSolved"):
-        raise DataError(f"the physically consistent fit did not converge ({solution.status})")
-    return np.asarray(sizes * np.array(solution.x))
+    for settings.max_step_fraction in STEPS:
+        solution = clarabel.DefaultSolver(
+            sparse.csc_matrix(np.triu(square) / unit * np.outer(sizes, sizes)),
+            -linear / unit * sizes,
+            sparse.csc_matrix(cones * sizes),
+            offsets,
+            [clarabel.PSDTriangleConeT(4)] * len(prior.widths) + [clarabel.NonnegativeConeT(len(places))],
+            settings,
+        ).solve()
+        if str(solution.status) in ("Solved", "AlmostSolved"):
+            return np.asarray(sizes * np.array(solution.x))
+    raise DataError(f"the physically consistent fit did not converge ({solution.status})")
 
 
 def is_consistent(parameters: Array) -> bool:

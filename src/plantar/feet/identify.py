@@ -42,7 +42,7 @@ def identify_feet(
     settings: FeetSettings | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> FeetResult:
-    """Stiffness, damping and offset of each foot, in pitch and roll, from logs of a standing robot (eq. 4 to 7).
+    """Stiffness, damping and offset of each foot, in pitch and roll, of a robot that stands or walks (eq. 4 to 7).
 
     All `logs` are fitted together; the scores on them are direct validation, those on `validate` cross-validation.
 

@@ -23,7 +23,7 @@ from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.stretches import most_moving
-from plantar.notes import Finding, Note
+from plantar.notes import Finding, Note, listing
 from plantar.robot.model import Imu, RobotModel, check_feet
 from plantar.sensors.air_zero import AirZero, air_zero
 from plantar.sensors.attitude_scale import AttitudeScale, log_attitude_scale
@@ -204,6 +204,10 @@ def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note
         names = ", ".join(missing)
         where = f"{log.name}: between IMU and feet, but not recorded: {names}"
         text = f"{where}; angles are right only if these joints stayed at 0"
+        joints = {column[6:].rpartition(".")[0] for column in log.columns if column.startswith("joint.")}
+        if strangers := sorted(joints - set(robot.joint_names)):
+            text += f". The log has {listing(strangers, 3)}, which the URDF has not: if one is meant, write in the "
+            text += "robot file joint_names: {renamed: {URDF's joint: log's joint}}"
         notes.append(Note("path_joint_missing", "warning", text))
     return velocities
 

@@ -162,18 +162,18 @@ def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None =
 
 def check_names(logs: Sequence[MotionLog]) -> None:
     """DataError where two logs have one name, which results name motions by, or are one recording, told twice."""
+    once = "valid: each once; told twice, intervals come out too narrow, and a log that was fitted validates nothing"
     seen: dict[str, MotionLog] = {}
     for log in logs:
+        if log.name in seen and log.path is not None and log.path == seen[log.name].path:
+            raise DataError(f"{log.source} is given twice ({once})")
         if log.name in seen:
             message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
         for other in seen.values():
             if _same_recording(log, other):
                 message = f"{other.source} and {log.source} hold the same recording, or most of one"
-                raise DataError(
-                    f"{message} (valid: each once; told twice, intervals come out too narrow, and a log that was "
-                    "fitted validates nothing)"
-                )
+                raise DataError(f"{message} ({once})")
         seen[log.name] = log
 
 

@@ -260,11 +260,11 @@ def check_feet(robot: RobotModel) -> None:
 
 
 def _urdf_path(path: Path, urdf: str) -> Path:
-    if "://" in urdf or urdf[0] in "~$":  # nothing here knows ROS's packages, or a shell's names
-        raise RobotError(
-            "urdf", path=path, value=urdf, valid="a path from this file's folder, or a whole one"
-        )
-    return path.parent / urdf
+    found = path.parent / urdf
+    if not os.path.exists(found):  # nothing here knows ROS's packages, or a shell's names
+        valid = "a path from this file's folder, or a whole one"
+        raise RobotError("urdf: there is no such file", path=path, value=urdf, valid=valid)
+    return found
 
 
 def _placement(entry: Entry, default_link: str = "") -> Placement:

@@ -66,8 +66,8 @@ def _feet_differ(entry: dict[str, Any]) -> dict[str, Any]:
         ("wrench sensor", [foot["wrench"]["name"] for foot in entry["feet"].values()]),
         ("ankle", [foot["ankle"] for foot in entry["feet"].values()]),
     ):
-        if len(set(names)) < len(names):
-            raise ValueError(f"feet share one {what}: {', '.join(names)}")
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise ValueError(f"feet share one {what}, '{twice[0]}'; each needs its own")
     return entry
 
 
@@ -157,7 +157,7 @@ def read_robot_file(path: Path) -> tuple[Entry, tuple[Guess, ...]]:
     """
     data, content = read_yaml(path)
     if not isinstance(data, dict):
-        raise RobotError("holds no keys", path=path, valid="name, urdf, imu, feet")
+        raise RobotError("holds no keys", path=path, valid="name, urdf, imu, feet, as `plantar init` writes")
     try:
         entry: Entry = WHOLE_FILE.validate_python(data)
     except ValidationError as error:
@@ -238,7 +238,7 @@ def _explain(error: ValidationError, path: Path) -> RobotError:
         return RobotError(f"key '{key}' is missing", path=path)
     message = first["msg"].removeprefix("Value error, ")
     value = first["input"] if isinstance(first["input"], str | int | float) else None
-    return RobotError(f"{key or 'the file'}: {message}", path=path, value=value)
+    return RobotError(f"{key}: {message}" if key else message, path=path, value=value)
 
 
 def _known_keys(location: tuple[int | str, ...]) -> list[str]:

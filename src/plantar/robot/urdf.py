@@ -17,6 +17,7 @@ from plantar.files import read_bounded
 LIMIT = 64 * 2**20  # bytes
 FARTHEST = 20.0  # m from a joint to the next, or from a link to its centre of mass
 _DECLARES = re.compile(r"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
+NO_XML = (2, 3, 5, 7, 8)  # expat's codes: no syntax, no elements, unclosed, mismatched, an attribute twice
 TURNING = ("revolute", "continuous", "prismatic")  # joints that have an axis
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
@@ -42,6 +43,8 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
         _check(ET.fromstring(urdf), path)
     except ET.ParseError as error:  # Pinocchio reads more than Python does, but prints what it cannot read
         broken = str(error)
+        if error.code in NO_XML:  # nor does Pinocchio read that
+            raise RobotError(f"is not a readable URDF: {broken}", path=path) from error
     root = [pin.JointModelFreeFlyer()] if floating else []
     try:
         return pin.buildModelFromXML(urdf, *root)
@@ -138,6 +141,8 @@ def _check(root: ET.Element, path: Path) -> None:
 def _check_tree(root: ET.Element, path: Path) -> None:
     """Refuse what its parser would print to the terminal, and say no more of than that it cannot be read."""
     names = {kind: [str(one.get("name")) for one in root.findall(kind)] for kind in ("link", "joint")}
+    if not names["link"]:
+        raise RobotError("is not a readable URDF: it has no <link>", path=path)
     for kind, known in names.items():
         if twice := [name for name in known if known.count(name) > 1]:
             raise RobotError(f"{kind} '{twice[0]}' is there twice", path=path, valid="names of their own")

@@ -21,7 +21,7 @@ OUTSIDE = 0.05  # share of the samples that may lie an EDGE or more outside an o
 ALIKE = 0.005  # m by which the outlines of two feet may differ
 WORTH_A_WORD = 0.03  # of the weight
 MOSTLY = 0.5  # share beyond which even a guessed outline contradicts the centre of pressure
-OFF_WEIGHT = 0.15  # share by which the feet may carry more or less than the URDF weighs
+OFF_WEIGHT = 0.1  # share by which the feet may carry more or less than the URDF weighs: twice `link_mass`
 UNEVEN = 0.02  # m between the planes of two soles
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import Array, cross
-from plantar.errors import DataError
+from plantar.errors import DataError, LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
@@ -23,6 +23,16 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
         text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
         notes.append(Note("gyroscope_missing", "warning", text))
         return orientation, rates_from(orientation, log.period)
+    if not log.has_imu(name, "angular_velocity", "linear_acceleration"):
+        others = sorted(
+            {column[4:].rsplit(".", 2)[0] for column in log.columns if column.startswith("imu.")} - {name}
+        )
+        valid = f"imu.{name}.orientation.w, .x, .y, .z, or both others"
+        valid += f"; in the robot file imu.name as the log has it: {', '.join(others)}" if others else ""
+        message = (
+            f"holds no orientation of imu '{name}', and not both angular_velocity and linear_acceleration"
+        )
+        raise LogError(message, path=log.source, valid=valid)
     rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
     if not whole.any():
