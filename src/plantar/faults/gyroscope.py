@@ -14,6 +14,7 @@ from plantar.faults.quaternions import misread, readings, turns_between
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
+from plantar.signals.heading import heading_jumps, without_jumps
 from plantar.signals.medians import median
 from plantar.signals.orientation import rates_from
 from plantar.signals.resampling import GAP_PERIODS
@@ -35,7 +36,6 @@ BY_LEANS = frozenset({IMU_LATE, SCALE, FRAME})  # an orientation that leans look
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
 # Samples of orientation and accelerometer: fewer tell nothing; more tell no more.
 FEWEST_COMPARED, COMPARED = 10, 2000
-SET_ANEW = 0.05  # rad within one sample that the gyroscope does not turn: a heading that was set anew
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 
@@ -63,8 +63,8 @@ class Turns:
             return None
         lasts = np.diff(log.time)[:, None]
         # Across a gap nobody knows how it has turned, least of all where the clock was set.
-        steps = (rates[1:] + rates[:-1]) / 2 * lasts
-        steps[(lasts[:, 0] > GAP_PERIODS * log.period) | _set_anew(orientation, steps)] = np.nan
+        steps = np.where(lasts > GAP_PERIODS * log.period, np.nan, (rates[1:] + rates[:-1]) / 2 * lasts)
+        orientation = without_jumps(orientation, heading_jumps(orientation, np.linalg.norm(steps, axis=1)))
         total = np.vstack([np.zeros(3), np.cumsum(np.nan_to_num(steps), axis=0)])
         missing = np.concatenate([[0], np.cumsum(np.isnan(steps).any(axis=1))])
         starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))
@@ -124,15 +124,6 @@ class Turns:
         """Whether the gyroscope turns as the orientation does about the world's axes, and not about the IMU's own."""
         apart, from_world = (np.sum((self.integral - turn) ** 2) for turn in (self.turn, self.world))
         return float(from_world) < FOLLOWED * float(apart)
-
-
-def _set_anew(orientation: Array, steps: Array) -> Mask:
-    """Between which samples (n - 1,) the orientation jumps, as a compass makes it: no rate is to be read there.
-
-    `steps` (n - 1, 3) [rad]: what the gyroscope turns meanwhile.
-    """
-    turned = np.linalg.norm(turns_between(orientation[:-1], orientation[1:]), axis=1)
-    return np.asarray((turned > SET_ANEW) & (np.linalg.norm(steps, axis=1) < turned / 2))
 
 
 def _centred(turns: Array) -> Array:
