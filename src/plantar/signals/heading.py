@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note, listing
 
 SET_ANEW = 0.05  # rad within one sample that the gyroscope does not turn: a heading that was set anew
@@ -19,16 +19,16 @@ def with_one_heading(log: MotionLog) -> MotionLog:
     for name in (
         one[4:-14] for one in log.columns if one.startswith("imu.") and one.endswith(".orientation.w")
     ):
-        orientation = log.orientation(name)
-        if orientation is None or not log.has_imu(name, "angular_velocity"):
+        parts = imu_columns(name, "orientation")
+        if not {*parts, *imu_columns(name, "angular_velocity")} <= set(log.columns):
             continue
-        rates = log.angular_velocity(name)
+        orientation, rates = log.stack(parts), log.angular_velocity(name)
         turned = np.linalg.norm(rates[1:] + rates[:-1], axis=1) / 2 * np.diff(log.time)
         jumps = heading_jumps(orientation, turned)
         at = np.flatnonzero(jumps)
         if at.size:
             seen = without_jumps(orientation, jumps)
-            columns |= {f"imu.{name}.orientation.{axis}": seen[:, place] for place, axis in enumerate("wxyz")}
+            columns |= dict(zip(parts, seen.T, strict=True))
             times = listing([f"{log.time[row + 1]:.4g} s" for row in at])
             text = f"{log.name}: the heading of imu '{name}' jumps, and nothing turned, at t = {times}: taken out"
             notes.append(Note("heading_jumps", "info", text))
