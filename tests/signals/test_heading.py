@@ -58,7 +58,9 @@ def test_what_is_no_jump_of_the_heading_alone_stays(log: MotionLog) -> None:
     rates = log.stack(RATES) + (np.gradient(quick, log.time))[:, None] * [0.0, 0.0, 1.0]
     turns = turned(log, quick).with_columns(dict(zip(RATES, rates.T, strict=True)))
     blind = turned(log, jumps(log, (12.0, 1.5))).without(RATES)
-    other = log.with_columns({"imu.hand.orientation.w": np.ones(len(log))})  # a part of an IMU that no foot needs
+    other = log.with_columns(
+        {"imu.hand.orientation.w": np.ones(len(log))}
+    )  # a part of an IMU that no foot needs
     for one in (log, leans, turns, blind, other):
         assert with_one_heading(one) is one
 
