@@ -99,8 +99,8 @@ def fit_prepared(
         loads = ({foot: bush.force_z for foot, bush in one.raw.items()} for one in ready.fitted)
         carried = max(map(carried_weight, loads)) / GRAVITY
         text = f"no foot carries load in any log: {carried:.1f} kg where the robot weighs {robot.mass:.1f} kg"
-        valid = "a standing robot, forces in N, the URDF's masses in kg; were the sensors zeroed under load, "
-        raise DataError(f"{names}: {text} (valid: {valid}'contact: always' for these feet)")
+        valid = "a standing robot, forces in N, masses in kg; 'contact: always' for sensors zeroed under load"
+        raise DataError(f"{names}: {text} (valid: {valid})")
     return_freed(max(log.size for log in logs))  # what preparation took, copies of the process would keep
     told = newton_told(ready)
     ready, feet = (
