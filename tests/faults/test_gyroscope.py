@@ -208,3 +208,13 @@ def test_windows_behind_an_empty_row_are_compared_too(log: MotionLog) -> None:
     assert whole is not None
     assert torn is not None
     assert len(torn.integral) > 0.8 * len(whole.integral)
+
+
+def test_a_heading_that_is_set_anew_is_no_fault_of_the_gyroscope(log: MotionLog) -> None:
+    names, orientation = [f"imu.chest.orientation.{part}" for part in "wxyz"], log.orientation("chest")
+    assert orientation is not None
+    heading = np.where(log.time > 17.0, 1.5, 0.0)[:, None] * [0.0, 0.0, 1.0]
+    seen = Rotation.from_rotvec(heading) * Rotation.from_quat(orientation, scalar_first=True)
+    jumped = log.with_columns(dict(zip(names, seen.as_quat(scalar_first=True).T, strict=True)))
+    assert codes(jumped) == []
+    assert codes(changed(jumped, 1.2 * jumped.stack(GYROSCOPE))) == ["gyroscope_scale"]

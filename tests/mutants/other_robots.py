@@ -106,7 +106,7 @@ OTHER_ROBOTS = (
     Mutant(
         "feet/place/told_exact.py",
         "a place that is told as exact is exact",
-        "if 2 * told.aside > usual.aside:",
+        "if 2 * told.aside >= usual.aside:",
         "if 2 * told.aside >= 0:",
         ("feet/place/test_told_exact.py",),
     ),

@@ -14,6 +14,7 @@ from plantar.faults.quaternions import misread, readings, turns_between
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
+from plantar.signals.heading import heading_jumps, without_jumps
 from plantar.signals.medians import median
 from plantar.signals.orientation import rates_from
 from plantar.signals.resampling import GAP_PERIODS
@@ -63,6 +64,7 @@ class Turns:
         lasts = np.diff(log.time)[:, None]
         # Across a gap nobody knows how it has turned, least of all where the clock was set.
         steps = np.where(lasts > GAP_PERIODS * log.period, np.nan, (rates[1:] + rates[:-1]) / 2 * lasts)
+        orientation = without_jumps(orientation, heading_jumps(orientation, np.linalg.norm(steps, axis=1)))
         total = np.vstack([np.zeros(3), np.cumsum(np.nan_to_num(steps), axis=0)])
         missing = np.concatenate([[0], np.cumsum(np.isnan(steps).any(axis=1))])
         starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))

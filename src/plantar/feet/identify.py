@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from plantar.choices import settings_of
+from plantar.contact.phases import carried_weight
+from plantar.conventions import GRAVITY
 from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
@@ -94,8 +96,11 @@ def fit_prepared(
     logs = [recording.log for recording in ready.fitted]
     if not any(recording.contacts[foot].standing.any() for recording in ready.fitted for foot in robot.feet):
         names = ", ".join(log.name for log in logs)
-        valid = "a standing robot, forces in N; were the sensors zeroed under load, 'contact: always' for these feet"
-        raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
+        loads = ({foot: bush.force_z for foot, bush in one.raw.items()} for one in ready.fitted)
+        carried = max(map(carried_weight, loads)) / GRAVITY
+        text = f"no foot carries load in any log: {carried:.1f} kg where the robot weighs {robot.mass:.1f} kg"
+        valid = "a standing robot, forces in N, masses in kg; 'contact: always' for sensors zeroed under load"
+        raise DataError(f"{names}: {text} (valid: {valid})")
     return_freed(max(log.size for log in logs))  # what preparation took, copies of the process would keep
     told = newton_told(ready)
     ready, feet = (

@@ -31,6 +31,7 @@ from plantar.sensors.newton_euler import held_for_a_while
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.signals.dropouts import without_dropouts
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.heading import with_one_heading
 from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude
 from plantar.signals.resampling import evenly_sampled, is_even, without_holes
@@ -79,8 +80,9 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
 
 
 def _even(log: MotionLog) -> MotionLog:
-    """The log on an even grid, without held samples, dropouts and spikes."""
-    return thinned(without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log))))))
+    """The log on an even grid, without held samples, dropouts, spikes and jumps of a heading."""
+    whole = with_one_heading(without_held(without_dropouts(evenly_sampled(log))))
+    return thinned(without_spikes(without_holes(whole)))
 
 
 def prepare(

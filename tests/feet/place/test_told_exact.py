@@ -70,3 +70,11 @@ def test_what_is_told_as_exact_and_shown_elsewhere_is_told_of_the_foot_alone_of_
     assert texts
     assert all(text.startswith("right") for text in texts)
     assert all(np.hypot(*model.moment_arms) < 0.003 for model in found.models if model.foot == "left")
+
+
+def test_a_foot_that_always_stands_has_no_place_to_be_told_exactly(
+    robot: RobotModel, recorded: list[MotionLog]
+) -> None:
+    feet = {name: replace(foot, contact="always") for name, foot in robot.feet.items()}
+    logs = [shifted(log, np.array([0.03, 0.0, 0.02])) for log in recorded]
+    assert "bush_place" not in codes(identify_feet(replace(robot, feet=feet), logs, settings=LINEAR))

@@ -39,8 +39,8 @@ def shown_elsewhere(
     shared: bool,
 ) -> Note | None:
     """A warning where one of a standing foot's fits about the place as `told` turns about another one; None where none
-    does, and where the robot file is hardly surer than is `usual`."""
-    if 2 * told.aside > usual.aside:
+    does, and where the robot file is hardly surer than is `usual`, or there is no prior as of `contact: always`."""
+    if 2 * told.aside >= usual.aside:
         return None
     free = replace(told, aside=GUESSED, above=GUESSED)
     for fit in fits:
