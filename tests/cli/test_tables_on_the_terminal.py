@@ -214,7 +214,7 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
     assert sum("samples without a value" in line for line in lines) == 5
     assert any("in which the zeros named below are still inside" in line for line in lines)
     assert any("problem: a hole" in line for line in lines)
-    heads, rows = under(lines, "What this log identifies by itself")
+    heads, rows = under(lines, "What this log identifies, in SI units")
     assert heads == ["foot", "axis", "parameter", "value", "verdict", "reason"]
     assert rows == [
         ["left", "pitch", "stiffness", "434", "usable", "narrow"],

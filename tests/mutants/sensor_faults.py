@@ -46,6 +46,14 @@ SENSOR_FAULTS = (
         "STRAINED = 2.0", "STRAINED = 200.0", ("sensors/test_moment_balance.py",),
     ),
     Mutant(
+        "sensors/moment_fit.py", "no URDF is wrong", "np.ones(links)", "np.full(links, 1e-6)",
+        ("sensors/test_moment_fit.py",),
+    ),
+    Mutant(
+        "sensors/below_sensor.py", "a foot that still carries a little swings", "(1 + strays) ** 2", "(1 + 0 * strays)",
+        ("sensors/test_below_sensor.py",),
+    ),
+    Mutant(
         "sensors/moment_balance.py", "a foot is judged by itself where nothing tells it from the other", "APART = 2.0",
         "APART = 200.0", ("sensors/test_moment_balance.py",),
     ),
@@ -67,8 +75,8 @@ SENSOR_FAULTS = (
         ("sensors/test_moment_balance.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the noise of readings is arms", "share * _products(noise",
-        "0 * share * _products(noise", ("sensors/test_moment_balance.py",),
+        "sensors/moment_errors.py", "the noise of readings is arms", "below * _products(row",
+        "0 * below * _products(row", ("sensors/test_moment_balance.py",),
     ),
     Mutant(
         "robot_guess/passive.py", "a foot may push the way it tilts",
@@ -226,8 +234,8 @@ SENSOR_FAULTS = (
         ("sensors/test_moment_fit.py",),
     ),
     Mutant(
-        "sensors/moment_fit.py", "parts that are left out are as good as all", "(len(own) - 1) / len(own) * (apart",
-        "1 / len(own) * (apart", ("sensors/test_moment_fit.py",),
+        "sensors/moment_fit.py", "parts that are left out are as good as all", "(len(parts) - 1) / len(parts) * (apart",
+        "1 / len(parts) * (apart", ("sensors/test_moment_fit.py",),
     ),
     Mutant(
         "feet/fit/hidden_memory.py", "a memory that is hardly known hides nothing",

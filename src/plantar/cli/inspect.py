@@ -103,7 +103,7 @@ def _print(out: Console, log: LogSummary, columns: bool, weighs: str) -> None:
             for p, last in zip(log.parameters, above, strict=False)
         ]
         styles = [VERDICT_STYLE[p.verdict] for p in log.parameters]
-        out.print(table("What this log identifies by itself, in SI units", heads, rows, styles))
+        out.print(table("What this log identifies, in SI units", heads, rows, styles))
     if allowed := assumption_cells(log.assumptions):
         out.print(table("What the robot file may be wrong about", ASSUMPTION_HEADS, allowed))
     if columns:

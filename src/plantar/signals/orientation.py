@@ -23,10 +23,8 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
         text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
         notes.append(Note("gyroscope_missing", "warning", text))
         return orientation, rates_from(orientation, log.period)
-    if not log.has_imu(name, "angular_velocity", "linear_acceleration"):
-        others = sorted(
-            {column[4:].rsplit(".", 2)[0] for column in log.columns if column.startswith("imu.")} - {name}
-        )
+    others = sorted({column[4:].rsplit(".", 2)[0] for column in log.columns if column.startswith("imu.")})
+    if name not in others:
         valid = f"imu.{name}.orientation.w, .x, .y, .z, or both others"
         valid += f"; in the robot file imu.name as the log has it: {', '.join(others)}" if others else ""
         message = (
