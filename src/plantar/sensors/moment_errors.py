@@ -59,11 +59,12 @@ class MomentErrors(NamedTuple):
 
 class MomentRow(NamedTuple):
     """One row of Newton's law: `signals` (n, c + 1) each `period` [s] are what it misses and its columns; `noise`
-    (n, k) what of the first k of them is too quick to be the robot's, None of a walk."""
+    (n, k) is what of some of them, which are `noisy` (k,), is too quick to be the robot's: of none of a walk."""
 
     signals: Array
     period: float
-    noise: Array | None
+    noisy: Array
+    noise: Array
 
 
 def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
@@ -75,10 +76,8 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         products.append(_products(own))
         power.append(products[-1].sum(axis=0) / len(own))
         share = stride * row.period / APART
-        if row.noise is not None:  # slopes are smooth: their noise is not white, and small below BAND
-            noisy = row.noise.shape[1]
-            below = _below_to_above(row.period) / stride
-            products[-1][:, :noisy, :noisy] -= below * _products(row.noise)
+        below = _below_to_above(row.period) / stride
+        products[-1][:, row.noisy[:, None], row.noisy] -= below * _products(row.noise)
     return MomentErrors(np.array(products), np.array(power), share, _zero_deviations(robot))
 
 
@@ -112,12 +111,14 @@ def moment_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -
     del residual, motion  # of all samples
     for row in range(6) if centre is None else range(6)[TORQUE]:
         signals = [missing[:, row], *_in_order([one.columns(row) for one in read])]
-        noisy = len(signals)
-        signals += [one[:, row] for one in slopes]
+        signals, of_sensors = [*signals, *(one[:, row] for one in slopes)], len(signals)
+        # Readings and links' accelerations. Slopes are smooth: their noise is not white, and small below BAND.
+        links = len(signals) - len(zeros) - len(by_links)
+        noisy = np.r_[:of_sensors, links : links + len(by_links)][: 0 if steps else None]
         # Without what postures and drifting zeros do to them.
         quick = without_slow_cosines(np.column_stack(signals), period, SLOW)
         slow = quick if steps else low_pass(quick, period, BAND)
-        yield MomentRow(slow, period, None if steps else quick[:, :noisy] - slow[:, :noisy])
+        yield MomentRow(slow, period, noisy, quick[:, noisy] - slow[:, noisy])
 
 
 def _about(centre: Array | None, rows: Array) -> Array:

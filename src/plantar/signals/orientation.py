@@ -25,11 +25,9 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
         return orientation, rates_from(orientation, log.period)
     others = sorted({column[4:].rsplit(".", 2)[0] for column in log.columns if column.startswith("imu.")})
     if name not in others:
-        valid = f"imu.{name}.orientation.w, .x, .y, .z, or both others"
+        valid = f"imu.{name}.orientation.w, .x, .y, .z, or angular_velocity and linear_acceleration"
         valid += f"; in the robot file imu.name as the log has it: {', '.join(others)}" if others else ""
-        message = (
-            f"holds no orientation of imu '{name}', and not both angular_velocity and linear_acceleration"
-        )
+        message = f"columns 'imu.{name}.*' are missing"
         raise LogError(message, path=log.source, valid=valid)
     rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
