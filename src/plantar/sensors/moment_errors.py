@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array
 from plantar.dynamics import Contact, Equation
@@ -33,6 +34,7 @@ MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no tur
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
 ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
 ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
+TOGETHER = 32  # columns that are made at a time
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
 
 
@@ -64,7 +66,7 @@ class MomentRow(NamedTuple):
     signals: Array
     period: float
     noisy: Array
-    noise: Array
+    noise: NDArray[np.float32]
 
 
 def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
@@ -102,7 +104,13 @@ def moment_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
     by_motion = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
-    by_links = _about(centre, equation.base_wrenches(motion, link_errors(robot)))
+    # Some at a time and in single precision: all together would be the largest array of any log.
+    errors = link_errors(robot)
+    by_links = [
+        wrench.astype(np.float32)
+        for first in range(0, len(errors), TOGETHER)
+        for wrench in _about(centre, equation.base_wrenches(motion, errors[first : first + TOGETHER]))
+    ]
     slopes = [*(_about(centre, rows) for rows in by_motion), *by_torques, *by_links, *zeros]
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
@@ -115,10 +123,16 @@ def moment_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -
         # Readings and links' accelerations. Slopes are smooth: their noise is not white, and small below BAND.
         links = len(signals) - len(zeros) - len(by_links)
         noisy = np.r_[:of_sensors, links : links + len(by_links)][: 0 if steps else None]
-        # Without what postures and drifting zeros do to them.
-        quick = without_slow_cosines(np.column_stack(signals), period, SLOW)
-        slow = quick if steps else low_pass(quick, period, BAND)
-        yield MomentRow(slow, period, noisy, quick[:, noisy] - slow[:, noisy])
+        slow = np.empty((len(missing), len(signals)))
+        noise = np.empty((len(missing), len(noisy)), dtype=np.float32)
+        for first in range(0, len(signals), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            # Without what postures and drifting zeros do to them.
+            quick = without_slow_cosines(np.column_stack(signals[some]), period, SLOW)
+            slow[:, some] = quick if steps else low_pass(quick, period, BAND)
+            own = (first <= noisy) & (noisy < first + TOGETHER)
+            noise[:, own] = (quick - slow[:, some])[:, noisy[own] - first]
+        yield MomentRow(slow, period, noisy, noise)
 
 
 def _about(centre: Array | None, rows: Array) -> Array:
@@ -129,7 +143,7 @@ def _about(centre: Array | None, rows: Array) -> Array:
     return np.concatenate([np.zeros_like(moments), moments], axis=-1)
 
 
-def _products(columns: Array) -> Array:
+def _products(columns: Array | NDArray[np.float32]) -> Array:
     """Of columns (n, k) with each other, in each part of the log, (parts, k, k)."""
     return np.array([part.T @ part for part in np.array_split(columns, PARTS)])
 
