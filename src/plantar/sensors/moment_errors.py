@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -143,7 +143,7 @@ def _about(centre: Array | None, rows: Array) -> Array:
     return np.concatenate([np.zeros_like(moments), moments], axis=-1)
 
 
-def _products(columns: Array | NDArray[np.float32]) -> Array:
+def _products(columns: NDArray[Any]) -> Array:
     """Of columns (n, k) with each other, in each part of the log, (parts, k, k)."""
     return np.array([part.T @ part for part in np.array_split(columns, PARTS)])
 
