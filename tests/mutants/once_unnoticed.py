@@ -190,7 +190,7 @@ DRAWN_BLINDLY = (
         "model_selection/model_fit.py", "the first parameter's freedom",
         "float(self.freedom[place]))",
         "float(self.freedom[0]))",
-        ("model_selection/test_model_fit.py",),
+        ("model_selection/test_fit_numbers.py",),
     ),
     Mutant(
         "motions/feasible.py", "the best support of a walk",

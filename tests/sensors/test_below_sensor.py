@@ -13,7 +13,7 @@ from plantar.dynamics import Equation
 from plantar.dynamics.motion import Motion, pinocchio_motion
 from plantar.feet.prepare_log import checked
 from plantar.robot.model import RobotModel
-from plantar.sensors.below_sensor import below_sensors, counts_below
+from plantar.sensors.below_sensor import _as_plate, below_sensors, counts_below
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.foot import cut_feet
@@ -107,6 +107,13 @@ def test_what_no_swing_shows_of_a_part_is_as_of_a_plate_of_the_sole_s_size(robot
         plate = pin.Inertia.FromBox(mass, along, across, 0.0)
         expected = pin.Inertia(mass, moment / mass, plate.inertia).toDynamicParameters()
         np.testing.assert_allclose(own[4:], expected[4:], atol=0.5 * plate.inertia[0, 0])
+
+
+def test_a_part_of_next_to_no_mass_has_next_to_no_inertia(robot: RobotModel) -> None:
+    """Noise of the moment over noise of the mass would be a place metres away."""
+    for foot in robot.feet.values():
+        assert np.abs(_as_plate(foot, 1e-6, np.array([0.006, 0.0, 0.0]))).max() < 1e-6
+        assert not _as_plate(foot, -1e-3, np.array([0.006, 0.0, 0.0])).any()
 
 
 @pytest.mark.parametrize("load_zero", [-80.0, 80.0])

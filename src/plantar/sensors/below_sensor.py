@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import pinocchio as pin
 
 from plantar.contact.phases import widened
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, Mask
@@ -25,9 +26,7 @@ LANDING = 0.15  # s around contact: the low-pass smears it
 SHORTEST = 1.0  # s in the air: less is hardly more than the noise
 LEAST_NOISE = 1e-3  # N, N.m: a dead sensor reads without any
 WORSE = 1.1  # times the squares of what Newton's law misses: by less, chance tells
-REWEIGHTED = (
-    10  # times: each row is weighed by what is left of it as a rule, each sample by what is left in it
-)
+REWEIGHTED = 10  # times: rows are weighed by what is left of them as a rule, samples by what is left in them
 HALF = 0.455  # of a normal error's variance: the median of its squares
 STRAY = 3.0  # times what is left as a rule: a foot that still carries a little, as before a first step, is no swing
 
@@ -66,12 +65,11 @@ def below_sensors(
         carried = equation.base_transfer(aloft.positions, contact)
         read = (carried @ own[swings][:, :, None])[..., 0]
         radius = np.sqrt(np.trace(body.matrix()[TORQUE, TORQUE]) / (2 * body.mass))
-        plate = _plate(foot)
-        sizes = body.mass * np.repeat([1.0, radius, np.trace(plate) / 3], [1, 3, 6])
+        sizes = body.mass * np.repeat([1.0, radius, np.trace(_plate(foot)) / 3], [1, 3, 6])
         largest = IN_AIR * robot.mass * GRAVITY
         columns = np.concatenate([-inertia, carried], axis=2)
         values = _least_squares(
-            columns, read, np.append(sizes, np.full(6, largest)), plate, min(period / APART, 1.0)
+            columns, read, np.append(sizes, np.full(6, largest)), foot, min(period / APART, 1.0)
         )
         parameters[contact.link] += values[:PER_LINK]
         zeros[place] = values[PER_LINK:]
@@ -108,11 +106,11 @@ def _plate(foot: Foot) -> Array:
     return np.asarray(turn @ np.diag([across, along, along + across]) @ turn.T)
 
 
-def _least_squares(columns: Array, read: Array, sizes: Array, plate: Array, share: float) -> Array:
+def _least_squares(columns: Array, read: Array, sizes: Array, foot: Foot, share: float) -> Array:
     """Coefficients (k,) of `columns` (n, 6, k) for `read` (n, 6), of which a `share` is independent.
 
-    `sizes` (k,): deviations of the coefficients before it from nothing, of a rotational inertia from a `plate`'s (3, 3)
-    for each kilogram: a foot hardly turns while it swings, and what no swing shows is needed where it lands.
+    `sizes` (k,): deviations of the coefficients before it from nothing, of a rotational inertia from that of a plate
+    like the foot's sole: a foot hardly turns while it swings, and what no swing shows is needed where it lands.
     """
     weights, scaled, usual = np.ones((1, 6)), columns * sizes, np.zeros(len(sizes))
     for _ in range(REWEIGHTED):
@@ -125,13 +123,17 @@ def _least_squares(columns: Array, read: Array, sizes: Array, plate: Array, shar
         rule = LEAST_NOISE**2 + np.median(left, axis=0) / HALF
         strays = np.mean(left / rule, axis=1, keepdims=True) / STRAY**2
         weights = share / (rule * (1 + strays) ** 2)
-        usual[4:PER_LINK] = _inertia_about_origin(values[0], values[1:4], plate)
+        usual[4:PER_LINK] = _as_plate(foot, values[0], values[1:4])
     return np.asarray(values)
 
 
-def _inertia_about_origin(mass: float, moment: Array, plate: Array) -> Array:
-    """The six of a plate of `mass` whose mass times place is `moment` (3,), in Pinocchio's order; zeros of no mass."""
+def _as_plate(foot: Foot, mass: float, moment: Array) -> Array:
+    """The rotational inertia (6,) of a plate like the sole of `mass` and with `moment` (3,), mass times place, about
+    the link's origin, in Pinocchio's order; zeros of no mass."""
     if mass <= 0:
         return np.zeros(6)
-    whole = mass * plate + (moment @ moment * np.eye(3) - np.outer(moment, moment)) / mass
-    return np.asarray(whole[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]])
+    sole, place = foot.sole.placement.xyz, moment / mass
+    # Noise of the moment over that of a mass of nearly nothing is no place.
+    farthest = float(np.linalg.norm(sole) + np.linalg.norm(np.ptp(foot.sole.polygon, axis=0)))
+    place *= farthest / max(float(np.linalg.norm(place)), farthest)
+    return np.asarray(pin.Inertia(mass, place, mass * _plate(foot)).toDynamicParameters()[4:])
