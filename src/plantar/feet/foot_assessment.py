@@ -38,7 +38,7 @@ from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 from plantar.robot.guesses import naming_notes
 from plantar.sensors.attitude_scale import ATTITUDE_SCALE
-from plantar.sensors.moment_balance import torque_gain_notes
+from plantar.sensors.moments.torque_gains import torque_gain_notes
 
 
 @dataclass(frozen=True)
