@@ -29,11 +29,10 @@ TOGETHER = 32  # columns that are made at a time
 
 class LawRow(NamedTuple):
     """One row of Newton's law: `signals` (n, c + 1) each `period` [s] are what it misses and its columns; `noise`
-    (n, k) is what of some of them, which are `noisy` (k,), is too quick to be the robot's: of none of a walk."""
+    (n, c + 1) is what of them is too quick to be the robot's, zero of columns with little of it; (0, c + 1) of a walk."""
 
     signals: Array
     period: float
-    noisy: Array
     noise: NDArray[np.float32]
 
 
@@ -75,18 +74,18 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
         signals = [missing[:, row], *_in_order([one.columns(row) for one in read])]
         signals, of_sensors = [*signals, *(one[:, row] for one in slopes)], len(signals)
         # Readings and links' accelerations. Slopes are smooth: their noise is not white, and small below BAND.
-        links = len(signals) - len(zeros) - len(by_links)
-        noisy = np.r_[:of_sensors, links : links + len(by_links)][: 0 if steps else None]
+        noisy = np.zeros(len(signals), dtype=bool)
+        noisy[:of_sensors] = noisy[-len(by_links) - len(zeros) : -len(zeros)] = True
         slow = np.empty((len(missing), len(signals)))
-        noise = np.empty((len(missing), len(noisy)), dtype=np.float32)
+        noise = np.zeros((0 if steps else len(missing), len(signals)), dtype=np.float32)
         for first in range(0, len(signals), TOGETHER):
             some = slice(first, first + TOGETHER)
             # Without what postures and drifting zeros do to them.
             quick = without_slow_cosines(np.column_stack(signals[some]), period, SLOW)
             slow[:, some] = quick if steps else low_pass(quick, period, BAND)
-            own = (first <= noisy) & (noisy < first + TOGETHER)
-            noise[:, own] = (quick - slow[:, some])[:, noisy[own] - first]
-        yield LawRow(slow, period, noisy, noise)
+            if not steps:
+                noise[:, some] = (quick - slow[:, some]) * noisy[some]
+        yield LawRow(slow, period, noise)
 
 
 def _about(centre: Array | None, rows: Array) -> Array:

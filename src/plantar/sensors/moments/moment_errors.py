@@ -61,11 +61,10 @@ def row_products(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) 
     for row in law_rows(robot, residual, steps):
         stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * row.period)))
         own = row.signals[::stride]
-        products.append(_products(own))
-        power.append(products[-1].sum(axis=0) / len(own))
+        with_noise, below = _products(own), _below_to_above(row.period) / stride
+        products.append(with_noise - below * _products(row.noise))
+        power.append(with_noise.sum(axis=0) / len(own))
         share = stride * row.period / APART
-        below = _below_to_above(row.period) / stride
-        products[-1][:, row.noisy[:, None], row.noisy] -= below * _products(row.noise)
     return RowProducts(np.array(products), np.array(power), share, zero_deviations(robot))
 
 
