@@ -29,7 +29,7 @@ TOGETHER = 32  # columns that are made at a time
 
 class LawRow(NamedTuple):
     """One row of Newton's law: `signals` (n, c + 1) each `period` [s] are what it misses and its columns; `noise`
-    (n, c + 1) is what of them is too quick to be the robot's, zero of columns with little of it; (0, c + 1) of a walk."""
+    (n, c + 1) is what of them is too quick for a robot, zero of columns with little of it, (0, c + 1) of a walk."""
 
     signals: Array
     period: float
