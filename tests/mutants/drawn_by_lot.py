@@ -158,7 +158,7 @@ DRAWN_BY_LOT = (
         "elif corners is None:",
     ),
     Mutant(
-        "sensors/moment_errors.py",
+        "sensors/sensor_errors.py",
         "an arm makes forces of torques",
         "np.block([[none, none], [cross, none]]), place)",
         "np.block([[none, cross], [none, none]]), place)",

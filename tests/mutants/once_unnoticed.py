@@ -50,7 +50,7 @@ GUARDS = (
         ("faults/test_load_signs.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the bush's axes taken for the sensor's",
+        "sensors/sensor_errors.py", "the bush's axes taken for the sensor's",
         "np.asarray((bush.T @ sensor)[[1, 0]])", "np.eye(3)[[1, 0]]", ("sensors/test_sensor_errors.py",),
     ),
     Mutant(

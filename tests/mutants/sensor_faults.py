@@ -146,11 +146,12 @@ SENSOR_FAULTS = (
         ("sensors/test_bandwidth.py",),
     ),
     Mutant(
-        "sensors/sensor_turns.py", "a turn that is hardly known is told", "and is_wrong(", "and not is_wrong(",
+        "sensors/moment_balance.py", "a turn that is hardly known is told",
+        "> LEAST_TURN and is_wrong(", "> LEAST_TURN and not is_wrong(",
         ("sensors/test_sensor_turns.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "a sensor's place is its turn", "place * own + 4 for", "place * own + 1 for",
+        "sensors/sensor_errors.py", "a sensor's place is its turn", "place * own + 4 for", "place * own + 1 for",
         ("sensors/test_sensor_turns.py",),
     ),
     Mutant(

@@ -15,9 +15,10 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
-from plantar.sensors.moment_errors import moment_errors, moment_rows, prior_deviations
+from plantar.sensors.moment_errors import moment_errors, moment_rows
 from plantar.sensors.moment_fit import MomentFit, Part, solved
 from plantar.sensors.newton_euler import newton_euler_residuals
+from plantar.sensors.sensor_errors import prior_deviations
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2

@@ -1,7 +1,8 @@
-"""Gains of the torque channels: what the feet's torques must be for the robot to move as it does.
+"""Gains of the torque channels, and turns of the force sensors: what must be read for the robot to move as it does.
 
 A torque that reads a tenth too large makes stiffness and damping a tenth too large, and nothing in a foot's own torque
-and angle shows it. The whole body does: forces, torques and their places must give the moments of eq. 1's base rows.
+and angle shows it. The whole body does: forces, torques and their places must give the moments of eq. 1's base
+rows. A sensor whose axes are not where the robot file has them shows a little of one torque in the other.
 """
 
 from __future__ import annotations
@@ -15,8 +16,9 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
 from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.load_errors import LEAST_GAIN
+from plantar.sensors.load_errors import LEAST_GAIN, TURN
 from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.sensor_errors import turn_columns
 
 APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so well is judged by itself
 ALSO = 0.5  # of the share about one axis, from which on the other axis' share is nearer to it than to none
@@ -25,6 +27,8 @@ WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom b
 # Share up to which numbers are widened by a gain and keep their verdicts: simulated robots with right torques, under
 # wrong URDFs and with late encoders, show up to 0.05.
 MAY_BE_CHANCE = 0.06
+TURNED = "wrench_turned"
+LEAST_TURN = 0.05  # rad: damping is off by some percent; one that is known less well may be chance
 
 
 class TorqueGain(NamedTuple):
@@ -124,4 +128,26 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
         )
         largest = max(map(abs, found.shares.values())) if found.apart else abs(found.mean)
         notes[axis] = Note("torque_gain", "warning" if largest > MAY_BE_CHANCE else "info", text)
+    return notes
+
+
+def sensor_turn_notes(robot: RobotModel, fit: MomentFit | None) -> dict[str, Note]:
+    """By foot, a warning where the moments of the robot's motion ask for a force sensor that is turned."""
+    notes: dict[str, Note] = {}
+    if fit is None:
+        return notes
+    parts = [*fit.parts, Part(TURN**2 * np.eye(len(fit.values)), MOST_FREEDOM)]
+    deviations = np.sqrt(np.sum([np.diag(part.covariance) for part in fit.parts], axis=0))
+    for foot, columns in turn_columns(robot).items():
+        turn, std = fit.values[columns], deviations[columns]
+        worst = int(np.argmax(np.abs(turn)))
+        known = NORMAL95 * std[worst] < LEAST_TURN
+        if known and abs(turn[worst]) > LEAST_TURN and is_wrong(fit.values, parts, [columns.start + worst]):
+            size, reach = np.degrees([turn[worst], NORMAL95 * std[worst]])
+            text = (
+                f"{foot}: forces and torques give the moments of the robot's motion with the force sensor's frame "
+                f"turned by {size:+.0f} ± {reach:.0f} deg about its {'xyz'[worst]} axis (95 %). Check "
+                f"'feet.{foot}.wrench' in the robot file, and the zeros of this leg's encoders, which turn it alike"
+            )
+            notes[foot] = Note(TURNED, "warning", text)
     return notes

@@ -1,4 +1,4 @@
-"""What may be wrong where the moments of eq. 1's base rows do not balance: one column for each error of a sensor."""
+"""The rows of Newton's law of one log: what they miss, and a column for each error of a sensor or a link."""
 
 from __future__ import annotations
 
@@ -7,33 +7,25 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
-from plantar.conventions import FORCE, GRAVITY, TORQUE, Array
+from plantar.conventions import FORCE, TORQUE, Array
 from plantar.dynamics import Contact, Equation
 from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.robot.kinematics import centre_of_mass
-from plantar.robot.model import Foot, RobotModel
-from plantar.sensors.load_errors import APART, LEAST_GAIN
+from plantar.robot.model import RobotModel
+from plantar.sensors.load_errors import APART
 from plantar.sensors.model_errors import imu_turn_slopes, link_errors
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
+from plantar.sensors.sensor_errors import directions, sensor_errors, zero_deviations
 from plantar.signals.filters import gain, low_pass
 from plantar.signals.slow_cosines import without_slow_cosines
 
-LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
-LEAST_ARM = 0.003  # m, likewise as LEAST_GAIN
-LEAST_BETWEEN = 0.001  # N.m/N, likewise
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
-LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
-LATE_TORQUES = 0.01  # s, of torques behind the forces of the same sensors: mostly read together
-MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
-ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
-ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
 TOGETHER = 32  # columns that are made at a time
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
 
@@ -80,7 +72,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         share = stride * row.period / APART
         below = _below_to_above(row.period) / stride
         products[-1][:, row.noisy[:, None], row.noisy] -= below * _products(row.noise)
-    return MomentErrors(np.array(products), np.array(power), share, _zero_deviations(robot))
+    return MomentErrors(np.array(products), np.array(power), share, zero_deviations(robot))
 
 
 def moment_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> Iterator[MomentRow]:
@@ -148,27 +140,10 @@ def _products(columns: NDArray[Any]) -> Array:
     return np.array([part.T @ part for part in np.array_split(columns, PARTS)])
 
 
-def prior_deviations(robot: RobotModel) -> Array:
-    """Deviations of the sensors' coefficients before the moments are asked, (k,): of all columns before the links'."""
-    feet = len(robot.feet)
-    of_feet = np.tile(_sensor_errors(robot)[1], feet)
-    late = [*np.full(feet + 2, LATE), *np.full(2, LATE_TORQUES)]
-    return np.concatenate([np.full(2 * feet, LOOSE), of_feet, np.full(3, MOUNT), late])
-
-
-def turn_columns(robot: RobotModel) -> dict[str, slice]:
-    """By foot, the three columns of its force sensor's turn."""
-    feet, own = len(robot.feet), len(_sensor_errors(robot)[1])
-    starts = {
-        foot: 2 * feet + place * own + 4 for place, foot in enumerate(robot.feet)
-    }  # behind gain and place
-    return {foot: slice(start, start + 3) for foot, start in starts.items()}
-
-
 @dataclass(frozen=True)
 class _SensorReadings:
     """What one foot's sensor reads, `wrench` (n, 6), its `transfer` (n, 6, 6) to the root, and the `errors` (k, 6, 6)
-    that may act on what it reads: gains of the torques about pitch and roll, then those of `_sensor_errors`.
+    that may act on what it reads: gains of the torques about pitch and roll, then those of `sensor_errors`.
 
     `by_torques` (2, n, 6): how the measured side changes with the moments at which these torques are read.
     """
@@ -193,9 +168,9 @@ class _SensorReadings:
         transfer = equation.base_transfer(positions, Contact(*robot.frame(foot.wrench.placement)))
         transfer = _about(centre, transfer.transpose(2, 0, 1)).transpose(1, 2, 0)
         alone = np.zeros((2, 6, 6))
-        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(robot, foot)]
+        alone[:, 3:, 3:] = [np.outer(along, along) for along in directions(robot, foot)]
         by_torques = (transfer @ (alone @ residual.changes[:, own].T).transpose(2, 1, 0)).transpose(2, 0, 1)
-        errors = np.concatenate([alone, _sensor_errors(robot)[0]])
+        errors = np.concatenate([alone, sensor_errors(robot)[0]])
         return cls(residual.readings[:, own], transfer, errors, by_torques)
 
     @property
@@ -213,40 +188,6 @@ def _in_order(feet: Sequence[Array]) -> Iterator[Array]:
     """Columns (k, n) of each foot as `MomentErrors` has them: gains of pitch, gains of roll, then all others."""
     yield from (own[gain] for gain in range(2) for own in feet)
     yield from (column for own in feet for column in own[2:])
-
-
-def _zero_deviations(robot: RobotModel) -> Array:
-    """Deviations of the channels' zeros before the moments are asked, (6 feet,) [N, N.m]."""
-    force = ZERO * robot.mass * GRAVITY
-    return np.tile(np.repeat([force, ZERO_ARM * force], 3), len(robot.feet))
-
-
-def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:
-    """What else a force sensor may get wrong: matrices (k, 6, 6) that act on what it reads, and their deviations (k,).
-
-    The gain of all channels, the place along x, y and z, the turn about them, each channel's own gain and what one
-    channel does to another; no torque reaches a force.
-    """
-    uncertainty = robot.uncertainty
-    share = max(uncertainty.wrench_gain, LEAST_GAIN)
-    place = max(uncertainty.bush_position, LEAST_ARM)
-    between = max(uncertainty.wrench_crosstalk, LEAST_BETWEEN)
-    none, crosses = np.zeros((3, 3)), [pin.skew(axis) for axis in np.eye(3)]
-    errors = [(np.eye(6), share)]
-    errors += [(np.block([[none, none], [cross, none]]), place) for cross in crosses]
-    errors += [(np.block([[cross, none], [none, cross]]), MOUNT) for cross in crosses]
-    for read, real in (pair for pair in np.ndindex(6, 6) if pair[0] >= 3 or pair[1] < 3):
-        single = np.zeros((6, 6))
-        single[read, real] = 1.0
-        errors.append((single, share if read == real else between))
-    matrices, deviations = zip(*errors, strict=True)
-    return np.array(matrices), np.array(deviations)
-
-
-def _directions(robot: RobotModel, foot: Foot) -> Array:
-    """The bush's pitch and roll axes in the force sensor's frame, (2, 3)."""
-    sensor, bush = (robot.frame(each)[1].rotation for each in (foot.wrench.placement, foot.bush))
-    return np.asarray((bush.T @ sensor)[[1, 0]])
 
 
 def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResidual) -> tuple[Array, Array]:

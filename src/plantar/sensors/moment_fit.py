@@ -16,7 +16,8 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import LOOSE, MomentErrors, prior_deviations
+from plantar.sensors.moment_errors import MomentErrors
+from plantar.sensors.sensor_errors import LOOSE, prior_deviations
 
 STRAINED = 2.0  # deviations of its prior and its own, beyond which a gain is of another unit
 ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
