@@ -67,6 +67,11 @@ class FeetSettings:
         )  # fmt: skip
 
     @property
+    def shared(self) -> bool:
+        """Whether all recordings have one offset."""
+        return self.offset == "shared"
+
+    @property
     def highest_cutoff(self) -> float:
         """The cutoff asked for, or the highest one that may be found [Hz]."""
         return DEFAULT_CUTOFF if self.cutoff is None else self.cutoff

@@ -15,7 +15,7 @@ from plantar.contact.stances import Stances
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width.encoder_delay import NAME, encoder_delay_causes
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
@@ -84,7 +84,7 @@ def test_of_a_walk_encoders_late_by_what_nobody_knows_are_damping() -> None:
     walk.raw[FOOT].torque[:, 1] = 0.0  # else a turned sensor would explain all
     fit = fit_axis([walk], FOOT, "pitch", replace(PUNCTUAL, model="kelvin_voigt"))
     assert fit is not None
-    blocks = tangent_blocks([walk], fit)
-    (cause,) = encoder_delay_causes(fit, blocks, [walk], 0.0005, False)
+    tangent = Tangent.of(fit, [walk], False)
+    (cause,) = encoder_delay_causes(tangent, 0.0005)
     assert cause.share[1] == pytest.approx(400.0 * 0.0005, rel=0.05)
-    assert encoder_delay_causes(fit, blocks, [walk], 0.0, False) == [], "a delay that is known"
+    assert encoder_delay_causes(tangent, 0.0) == [], "a delay that is known"

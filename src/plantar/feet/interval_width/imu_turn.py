@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from plantar.estimation import effect_of, influences_of
 from plantar.feet.interval_width.cause import Cause
-from plantar.feet.place.imu_mount import ImuTurn, turn_columns
-from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import blocks_of
+from plantar.feet.place.imu_columns import imu_columns
+from plantar.feet.place.imu_mount import ImuTurn
+from plantar.feet.regression.tangent import Tangent
 
 NAME = "imu turn"
 
 
-def imu_turn_causes(fit: AxisFit, recordings: Sequence[Recording], turn: ImuTurn) -> list[Cause]:
+def imu_turn_causes(tangent: Tangent, turn: ImuTurn) -> list[Cause]:
     """What is not known of the turn, as far as it moves the fit of a foot that steps; others have it in their place."""
-    blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    if blocks[0].stances is None or not turn.covariance.any():
+    if not tangent.steps or not turn.covariance.any():
         return []
-    columns = turn_columns(fit, recordings, blocks)
-    effects = effect_of(influences_of(blocks), columns) @ np.linalg.cholesky(turn.covariance)
+    effects = tangent.effect(tangent.rows(lambda one: imu_columns(one, tangent.fit)))
+    effects = effects @ np.linalg.cholesky(turn.covariance)
     return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=1)), 1.0)]

@@ -2,33 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from plantar.estimation import Block
 from plantar.feet.interval_width.between_recordings import Apart, between_recordings
 from plantar.feet.interval_width.between_walks import between_walks
 from plantar.feet.interval_width.cause import Cause
-from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.tangent import Tangent
 
 
-def robot_causes(
-    fit: AxisFit,
-    blocks: Sequence[Block],
-    recordings: Sequence[Recording],
-    wrench_gain: float,
-    apart: Apart,
-    shared: bool,
-) -> list[Cause]:
-    """The force sensors' gain, a turned sensor, and recordings, their `tangent_blocks`, that differ: `apart`, as all
-    axes show it."""
+def robot_causes(tangent: Tangent, wrench_gain: float, apart: Apart) -> list[Cause]:
+    """The force sensors' gain, a turned sensor, and recordings that differ: `apart`, as all axes show it."""
     # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
     # reads cos ψ of the torque; where it is the IMU that is turned, all of it, and only moving joints tell them apart.
-    turned = 1 - float(np.cos(fit.turned))
+    turned = 1 - float(np.cos(tangent.fit.turned))
     gain = float(np.hypot(wrench_gain, turned))
-    causes = [Cause("sensor gain", fit.values, gain)] if gain else []
-    if blocks[0].stances is not None:
-        return [*causes, *between_walks(fit, blocks, apart)]
-    return [*causes, *between_recordings(fit, blocks, recordings, apart, shared)]
+    causes = [Cause("sensor gain", tangent.fit.values, gain)] if gain else []
+    return causes + (between_walks if tangent.steps else between_recordings)(tangent, apart)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.estimation import Block, LinearFit
+from plantar.estimation import LinearFit
 from plantar.feet.place.imu_columns import imu_columns, that_show
-from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import late_encoder_torque
-from plantar.feet.regression.regression_data import all_beside, blocks_of, recordings_of
+from plantar.feet.regression.tangent import Tangent
 
 
 class ImuTurn(NamedTuple):
@@ -37,21 +34,19 @@ class Told(NamedTuple):
     information: Array
 
 
-def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> tuple[list[Block], Mask]:
-    """Eq. 6 of one axis with more columns at its end, the torque for each radian of a turn; about which axes (3,).
+def with_turns(tangent: Tangent, mount: float) -> tuple[Tangent, Mask]:
+    """One axis with more columns at its end, the torque for each radian of a turn; about which axes (3,).
 
     mount: deviation of the angles; about an axis about which one adds as good as nothing to the torque there is none.
     Before these stands what late encoders would add, so that none of it passes for a turn: a third of a millisecond had
     passed for two degrees about the axis that the legs swing about.
     """
-    blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    columns = turn_columns(fit, recordings, blocks)
-    shown = that_show(blocks, columns, np.full(3, mount))
-    chosen = recordings_of(blocks, recordings)
-    late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
+    columns = tangent.rows(lambda one: imu_columns(one, tangent.fit))
+    shown = that_show(tangent.blocks, columns, np.full(3, mount))
+    late = tangent.rows(lambda one: late_encoder_torque(one, tangent.fit)[:, None])
     if any(column.any() for column in late):
-        blocks = all_beside(blocks, late)
-    return all_beside(blocks, [own[:, shown] for own in columns]), shown
+        tangent = tangent.beside(late)
+    return tangent.beside([own[:, shown] for own in columns]), shown
 
 
 def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
@@ -63,8 +58,3 @@ def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
     angles[shown] = found.values[own]
     information[np.ix_(shown, shown)] = np.linalg.inv(found.covariance[own, own])
     return [Told(angles, information)]
-
-
-def turn_columns(fit: AxisFit, recordings: Sequence[Recording], blocks: Sequence[Block]) -> list[Array]:
-    """Torque for each radian of a turn at the rows of each block, (n, 3)."""
-    return [imu_columns(one, fit)[one.rows(fit.foot)] for one in recordings_of(blocks, recordings)]
