@@ -12,18 +12,16 @@ is roll and y pitch only as long as the robot faces the world's x.
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import yaml
 
 from plantar.conventions import Axis
 from plantar.errors import ExportError
+from plantar.exporters.job import Job
 from plantar.files import read_bounded
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 # Key -> (attribute of the spring, axes in order x y z, the observer's default).
 ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {
