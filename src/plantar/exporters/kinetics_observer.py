@@ -12,7 +12,6 @@ is roll and y pitch only as long as the robot faces the world's x.
 from __future__ import annotations
 
 import os
-from typing import Final
 
 import numpy as np
 import yaml
@@ -20,6 +19,7 @@ import yaml
 from plantar.conventions import Axis
 from plantar.errors import ExportError
 from plantar.exporters.job import Job
+from plantar.exporters.openhrp import LIMIT
 from plantar.files import read_bounded
 from plantar.notes import Notes
 
@@ -30,7 +30,6 @@ ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {
     "linDamping": ("damping", (None, None, "z"), 120.0),
     "angDamping": ("damping", ("roll", "pitch", None), 12.0),
 }
-LIMIT: Final = 2**20  # bytes
 
 
 def read_contacts(path: str | os.PathLike[str]) -> dict[Axis, tuple[float, float]]:

@@ -8,13 +8,13 @@ from typing import Any, Final, Literal, get_args
 
 from plantar.choices import number_in, one_of
 from plantar.models import MODELS
+from plantar.signals.filters import LOWEST_CUTOFF
 
 OffsetRule = Literal["per-motion", "shared"]
 AUTOMATIC: Final = "auto"
 MODEL_CHOICES: Final = (AUTOMATIC, *MODELS)
 DEFAULT_CUTOFF: Final = 5.0  # Hz: sways of a robot are slower, and encoders differentiated are noise above
 
-LOWEST_CUTOFF: Final = 0.1  # Hz: below it nothing of a sway is left
 LEAST_WINDOW: Final = math.radians(0.01)  # rad: finer than a good encoder
 LONGEST_DELAY: Final = 1.0  # s: a sensor that is later has another fault than a delay
 

@@ -7,6 +7,7 @@ import numpy as np
 from plantar import _core
 from plantar.conventions import Array
 
+LOWEST_CUTOFF = 0.1  # Hz: below it nothing of a motion is left
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
 SHORTEST_FITTED_RUN = 8  # samples of a stance, or between gaps of a thinned log: one cycle of the cutoff

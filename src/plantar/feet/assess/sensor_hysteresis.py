@@ -9,7 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES
+from plantar.feet.assess.late_recordings import RATE
 from plantar.feet.fit.hidden_memory import has_memory
+from plantar.feet.place.misread_joints import PART
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
@@ -17,10 +19,6 @@ from plantar.notes import Note
 # Of the fast rate (98th percentile), within which its sign changes: behind a filter it is no step.
 SOFT = 0.02
 SURE = 4.0  # deviations of the hysteresis: of healthy feet it is below 3
-RATE = 1  # the place of damping in spring and damper
-# Of the damping's interval, by which the sign moves it: a sensor stays behind only after it has turned far enough, so
-# that a sign gives back a sixth to a half of what is missing.
-PART = 0.5
 HYSTERESIS = "sensor_hysteresis"
 
 

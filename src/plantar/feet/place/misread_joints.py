@@ -33,8 +33,8 @@ ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is,
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
 ALL_LATE = 0.25  # s, likewise of all joints, which are late together where it is the IMU that is early
-# Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
-# sign of its rate gives back half of what is missing.
+# Of an interval, by which play of a joint, or hysteresis of a sensor, moves its number: both stay behind only after a
+# turn is far enough, so that the sign of a rate gives back half of what is missing at most.
 PART = 0.5
 SOFT = 0.1  # of a joint's fast rate, within which its sign changes: behind a filter it is no step
 FAST = 98  # percentile
