@@ -233,7 +233,7 @@ DATA_FAULTS = (
         ("feet/put_right/test_imu_of_steps.py",),
     ),
     Mutant(
-        "feet/interval_width/imu_turn.py", "an unknown mount widens nothing", "np.sum(effects**2, axis=1)",
+        "feet/interval_width/sensor_causes.py", "an unknown mount widens nothing", "np.sum(effects**2, axis=1)",
         "0 * np.sum(effects**2, axis=1)",
         ("feet/put_right/test_imu_of_steps.py",),
     ),

@@ -21,16 +21,13 @@ from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import Apart
 from plantar.feet.interval_width.cause import inflated
-from plantar.feet.interval_width.encoder_delay import encoder_delay_causes
-from plantar.feet.interval_width.fading import fading_causes
 from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
-from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.joint_compliance import joint_compliance_causes
-from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.sensor_causes import encoder_delay_causes, fading_causes, imu_turn_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
-from plantar.feet.interval_width.systematic import systematic_causes
-from plantar.feet.place.far_arms import far_arms
+from plantar.feet.interval_width.systematic import robot_causes, systematic_causes
 from plantar.feet.place.misread_joints import OUT_OF_TIME, misread_joint_notes
+from plantar.feet.place.place_notes import far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import recordings_of
 from plantar.feet.regression.tangent import Tangent

@@ -20,8 +20,7 @@ from plantar.feet.interval_width.between_recordings import (
     recordings_apart,
 )
 from plantar.feet.interval_width.cause import inflated
-from plantar.feet.interval_width.robot_causes import robot_causes
-from plantar.feet.interval_width.systematic import systematic_causes
+from plantar.feet.interval_width.systematic import robot_causes, systematic_causes
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.place.told_exact import as_measured, shown_elsewhere
 from plantar.feet.place.turned_bush import turned_bush_note

@@ -23,7 +23,7 @@ from plantar.feet.interval_width.force_gain import (
     force_gain_notes,
     torque_gain_causes,
 )
-from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.systematic import robot_causes
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.tangent import Tangent

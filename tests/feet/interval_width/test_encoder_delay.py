@@ -14,7 +14,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.encoder_delay import NAME, encoder_delay_causes
+from plantar.feet.interval_width.sensor_causes import LATE_ENCODERS, encoder_delay_causes
 from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -44,7 +44,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> tuple[FeetResult, FeetR
 
 
 def shares(result: FeetResult) -> list[float]:
-    return [row.variance_shares.get(NAME, 0.0) for row in result.diagnosis if row.name == "damping"]
+    return [row.variance_shares.get(LATE_ENCODERS, 0.0) for row in result.diagnosis if row.name == "damping"]
 
 
 def test_encoders_on_time_widen_nothing(results: tuple[FeetResult, FeetResult]) -> None:
@@ -62,7 +62,7 @@ def test_early_ones_widen_the_damping_until_it_holds_the_truth(
         low, high = row.interval95
         assert low < law.damping < high
         share = next(
-            one.variance_shares.get(NAME, 0.0)
+            one.variance_shares.get(LATE_ENCODERS, 0.0)
             for one in results[1].diagnosis
             if (one.foot, one.axis, one.name) == (foot, axis, "damping")
         )

@@ -12,7 +12,7 @@ from feet_trials import LINEAR, noisy
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width.between_recordings import Apart
-from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.systematic import robot_causes
 from plantar.feet.prepare import prepare_all
 from plantar.feet.regression.tangent import Tangent
 from plantar.results.feet import FeetResult

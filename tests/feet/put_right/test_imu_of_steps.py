@@ -14,7 +14,7 @@ from plantar.contact.stances import Stances
 from plantar.conventions import Array
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
-from plantar.feet.interval_width.imu_turn import imu_turn_causes
+from plantar.feet.interval_width.sensor_causes import imu_turn_causes
 from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.put_right.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown

@@ -14,6 +14,8 @@ from plantar.estimation.errors_in_variables import slow_attenuation
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, has_memory, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
+from plantar.feet.interval_width.between_recordings import Apart, between_recordings
+from plantar.feet.interval_width.between_walks import between_walks
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.interval_width.yaw_zero import yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording, moment_arm_effect
@@ -206,3 +208,13 @@ def _suspected_hardening(tangent: Tangent) -> list[Cause]:
         alike = moved[0] * fit.values[1] / fit.values[0]
         moved[1] = max(moved[1], alike, key=abs)
     return [Cause("hardening", moved / hardening, abs(hardening))]
+
+
+def robot_causes(tangent: Tangent, wrench_gain: float, apart: Apart) -> list[Cause]:
+    """The force sensors' gain, a turned sensor, and recordings that differ: `apart`, as all axes show it."""
+    # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
+    # reads cos ψ of the torque; where it is the IMU that is turned, all of it, and only moving joints tell them apart.
+    turned = 1 - float(np.cos(tangent.fit.turned))
+    gain = float(np.hypot(wrench_gain, turned))
+    causes = [Cause("sensor gain", tangent.fit.values, gain)] if gain else []
+    return causes + (between_walks if tangent.steps else between_recordings)(tangent, apart)

@@ -18,7 +18,7 @@ from plantar.conventions import UNIFORM, Array
 from plantar.estimation import Block, LinearFit
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.estimation.orthonormal import without
-from plantar.feet.place.imu_columns import imu_columns, that_show
+from plantar.feet.place.imu_mount import imu_columns, that_show
 from plantar.feet.place.place_notes import place_notes
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording

@@ -16,7 +16,7 @@ import numpy as np
 from plantar.conventions import SHOWN
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
-from plantar.feet.interval_width.encoder_delay import with_late_encoders
+from plantar.feet.interval_width.sensor_causes import with_late_encoders
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording, has_steps
 from plantar.feet.regression.load_torque import ENCODERS_APART
