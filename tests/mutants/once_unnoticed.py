@@ -211,9 +211,7 @@ DRAWN_BLINDLY = (
         ("logs/readers/test_csv_text.py",),
     ),
     Mutant(
-        "logs/readers/tables/csv_text.py", "what is inside the inflater is lost",
-        "if text := inflater.flush():",
-        'if text := b"":',
+        "logs/readers/tables/csv_text.py", "a cut file is broken", "except EOFError:", "except KeyError:",
         ("logs/readers/test_csv_text.py",),
     ),
     Mutant(

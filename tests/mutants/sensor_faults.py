@@ -255,11 +255,11 @@ SENSOR_FAULTS = (
         ("faults/joints/test_still_joints.py",),
     ),
     Mutant(
-        "signals/slow_cosines.py", "the quickest of the slow cosines stays", "slowest * len(rows) * period) + 1",
+        "signals/filters.py", "the quickest of the slow cosines stays", "slowest * len(rows) * period) + 1",
         "slowest * len(rows) * period)", ("signals/test_slow_cosines.py",),
     ),
     Mutant(
-        "signals/slow_cosines.py", "a constant stays", "np.arange(count) * (", "np.arange(1, count + 1) * (",
+        "signals/filters.py", "a constant stays", "np.arange(count) * (", "np.arange(1, count + 1) * (",
         ("signals/test_slow_cosines.py",),
     ),
     Mutant(

@@ -105,8 +105,8 @@ STANDING_SOLES = (
     Mutant(
         "feet/interval_width/systematic.py",
         "feet that stand know their angle",
-        "        _angle_errors(fit, blocks, shared),\n",
-        "        *([_angle_errors(fit, blocks, shared)] if blocks[0].stances else []),\n",
+        "        _angle_errors(tangent),\n",
+        "        *([_angle_errors(tangent)] if tangent.steps else []),\n",
         ("feet/interval_width/test_systematic.py",),
     ),
 )

@@ -19,8 +19,7 @@ from plantar.sensors.model_errors import imu_turn_slopes, link_errors
 from plantar.sensors.moments.sensor_errors import bush_directions, sensor_errors
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
-from plantar.signals.filters import low_pass
-from plantar.signals.slow_cosines import without_slow_cosines
+from plantar.signals.filters import low_pass, without_slow_cosines
 
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
