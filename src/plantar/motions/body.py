@@ -21,6 +21,7 @@ CHEST = "plantar.chest"
 REACHED = 1e-3  # m: how far a foot or the chest may be from where it should be
 STEPS = 3  # Gauss-Newton steps from one knot to the next
 BENT = 0.5  # rad
+MOVED = 0.1  # rad: less is no bending
 
 
 class Body:
@@ -91,14 +92,28 @@ class Body:
         frames = [self.model.frames[self.model.getFrameId(self.sole(foot))] for foot in self.robot.feet]
         return frozenset(joint for frame in frames for joint in self.model.supports[frame.parentJoint])
 
+    @cached_property
+    def _bounded(self) -> NDArray[np.intp]:
+        """Where the legs' joints that have limits stand in a configuration."""
+        places = [
+            self.model.joints[joint].idx_q for joint in self.leg_joints if self.model.joints[joint].nq == 1
+        ]
+        low, high = self.model.lowerPositionLimit[places], self.model.upperPositionLimit[places]
+        return np.array(places, dtype=np.intp)[np.flatnonzero(low < high)]
+
     def bent(self, q: Array) -> Array:
         """A copy of `q` with every joint of the legs towards the middle of its range: knees bend the right way."""
-        bent, (low, high) = q.copy(), (self.model.lowerPositionLimit, self.model.upperPositionLimit)
-        for joint in self.leg_joints:
-            place = self.model.joints[joint].idx_q
-            if self.model.joints[joint].nq == 1 and low[place] < high[place]:
-                bent[place] = np.clip((low[place] + high[place]) / 2, -BENT, BENT)
+        bent, places = q.copy(), self._bounded
+        middle = (self.model.lowerPositionLimit + self.model.upperPositionLimit)[places] / 2
+        bent[places] = np.clip(middle, -BENT, BENT)
         return bent
+
+    def room(self, q: Array, moved: Array) -> float:
+        """The least room [rad] that a joint of the legs has at `q`, the way it came by `moved` (nq,): of those that
+        moved."""
+        places = self._bounded[np.abs(moved[self._bounded]) > MOVED]
+        low, high = self.model.lowerPositionLimit[places], self.model.upperPositionLimit[places]
+        return float(np.min(np.where(moved[places] > 0, high - q[places], q[places] - low), initial=np.inf))
 
     def shifted(self, q: Array, posture: Mapping[str, float]) -> Array:
         """A copy of `q` with some joints set."""

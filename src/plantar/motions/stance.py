@@ -14,7 +14,12 @@ from plantar.conventions import Array
 from plantar.errors import MotionError
 from plantar.motions.body import CHEST, REACHED, Body
 
-KNEE_BEND = 0.94  # of the straight leg's height, where no posture is given
+KNEE_BENDS = (
+    0.94,
+    0.96,
+    0.98,
+)  # of the straight leg's height, where no posture is given: tried in this order
+LIFTED = 0.45  # rad, by which the joints of a leg bend further while its foot is lifted with a level sole
 STEP_ASIDE = 0.05  # m, the right leg to the right (B)
 STEP_FORWARD = 0.10  # m, the right leg forward (C)
 RAISED = 0.08  # m, the free foot above the floor (F, G)
@@ -57,22 +62,31 @@ def stand(
     _check_apart(body, targets)
     centre = sum((target.translation for target in targets.values()), start=np.zeros(3)) / len(targets)
     over = np.mean([target.act(_middle(body, name)) for name, target in targets.items()], axis=0)
-    height = -middle[2] * (KNEE_BEND if posture is None else 1.0)
-    q[:3] = centre + [-middle[0] if posture is not None else 0.0, 0.0, height]
     if posture is None:
-        over_feet = body.centre_task(np.array([over[0], over[1], 0.0]))
-        upright = body.chest_task(pin.SE3.Identity(), position=False)
-        # Of the pelvis, not of the chest: what bends between them would lower the chest, and legs stay straight.
-        lowered = body.root_task(pin.SE3(pin.Quaternion(q[3:7]), q[:3]))
-        lowered.set_position_cost([0.0, 0.0, 10.0])
-        tasks = [*body.foot_tasks(targets), upright, lowered, over_feet]
-        beginning = body.bent(q)
+        q[:3] = centre - [0.0, 0.0, middle[2]]
+        q = _with_bent_knees(body, q, targets, np.array([over[0], over[1], 0.0]))
     else:
-        tasks = [*body.foot_tasks(targets), body.chest_task(body.pose(q, CHEST))]
-        beginning = q
-    q = body.solve(beginning, tasks, q, steps=60)
+        q[:3] = centre - [middle[0], 0.0, middle[2]]
+        q = body.solve(q, [*body.foot_tasks(targets), body.chest_task(body.pose(q, CHEST))], q, steps=60)
     check_reached(body, q, targets, "standing")
     return Stance(q, targets, frozenset(targets))
+
+
+def _with_bent_knees(body: Body, straight: Array, targets: Mapping[str, pin.SE3], over: Array) -> Array:
+    """The robot that stands `straight` with the pelvis lower and the centre of mass `over` (3,) [m] the feet, as low as
+    leaves the joints of its legs room to lift a foot."""
+    upright = body.chest_task(pin.SE3.Identity(), position=False)
+    q = straight
+    for bend in KNEE_BENDS:
+        low = straight * np.r_[1.0, 1.0, bend, np.ones(straight.size - 3)]
+        # Of the pelvis, not of the chest: what bends between them would lower the chest, and legs stay straight.
+        lowered = body.root_task(pin.SE3(pin.Quaternion(low[3:7]), low[:3]))
+        lowered.set_position_cost([0.0, 0.0, 10.0])
+        tasks = [*body.foot_tasks(targets), upright, lowered, body.centre_task(over)]
+        q = body.solve(body.bent(low), tasks, low, steps=60)
+        if body.room(q, q - straight) > LIFTED:
+            break
+    return q
 
 
 def on_one_leg(body: Body, start: Stance, foot: str, arms: Mapping[str, float]) -> Stance:

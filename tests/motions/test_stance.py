@@ -1,0 +1,63 @@
+"""How a robot stands that has no posture of its own: knees bent the way they can, the pelvis level."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from plantar.conventions import Array
+from plantar.motions.body import CHEST, Body
+from plantar.motions.stance import stand
+from plantar.twin.robots import hrp2
+
+KNEES, ANKLES = (("LLEG_JOINT3", "RLEG_JOINT3"), ("LLEG_JOINT4", "RLEG_JOINT4"))
+
+
+@pytest.fixture
+def body() -> Body:
+    return Body(hrp2.robot())
+
+
+def joint(body: Body, q: Array, name: str) -> float:
+    return float(q[body.model.joints[body.model.getJointId(name)].idx_q])
+
+
+def limit(body: Body, names: tuple[str, ...], low: float, high: float) -> None:
+    for name in names:
+        place = body.model.joints[body.model.getJointId(name)].idx_q
+        body.model.lowerPositionLimit[place], body.model.upperPositionLimit[place] = low, high
+
+
+def level(body: Body, q: Array) -> None:
+    """Pelvis and chest stand upright, the centre of mass over the soles' middle."""
+    for rotation in (pin.Quaternion(q[3:7]).matrix(), body.pose(q, CHEST).rotation):
+        np.testing.assert_allclose(rotation, np.eye(3), atol=1e-3)
+
+
+def test_knees_bend_and_the_waist_does_not(body: Body) -> None:
+    q = stand(body, None, {}).configuration
+    level(body, q)
+    assert all(joint(body, q, name) > 0.5 for name in KNEES)
+    assert abs(joint(body, q, "CHEST_JOINT1")) < 0.06
+
+
+def test_legs_that_bend_the_other_way_bend_the_other_way(body: Body) -> None:
+    """From straight legs both ways look alike: ranges of hips, knees and ankles say which is right."""
+    low, high = body.model.lowerPositionLimit, body.model.upperPositionLimit
+    for name in (f"{side}LEG_JOINT{number}" for side in "LR" for number in (2, 3, 4)):
+        place = body.model.joints[body.model.getJointId(name)].idx_q
+        limit(body, (name,), -high[place], -low[place])
+    limit(body, KNEES, -2.6, 0.4)
+    q = stand(body, None, {}).configuration
+    level(body, q)
+    assert all(joint(body, q, name) < -0.5 for name in KNEES)
+
+
+@pytest.mark.parametrize(("lowest", "bent"), [(-1.3, 0.75), (-0.75, 0.62), (-0.6, 0.44)])
+def test_ankles_that_turn_little_leave_knees_straighter(body: Body, lowest: float, bent: float) -> None:
+    """A foot that is lifted with its sole level turns its ankle further: at its limit the trunk would jump."""
+    limit(body, ANKLES, lowest, 0.7)
+    q = stand(body, None, {}).configuration
+    assert all(joint(body, q, name) == pytest.approx(bent, abs=0.02) for name in KNEES)
+    level(body, q)
