@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from plantar.conventions import Array
+from plantar.errors import MotionError
 from plantar.motions.body import CHEST, Body
-from plantar.motions.stance import stand
+from plantar.motions.stance import check_reached, stand
 from plantar.twin.robots import hrp2
 
 KNEES, ANKLES = (("LLEG_JOINT3", "RLEG_JOINT3"), ("LLEG_JOINT4", "RLEG_JOINT4"))
@@ -61,3 +64,24 @@ def test_ankles_that_turn_little_leave_knees_straighter(body: Body, lowest: floa
     q = stand(body, None, {}).configuration
     assert all(joint(body, q, name) == pytest.approx(bent, abs=0.02) for name in KNEES)
     level(body, q)
+
+
+@pytest.mark.parametrize(
+    ("stopped", "said"),
+    [
+        ((), "misses by 20.0 mm (valid"),
+        (ANKLES[:1], "misses by 20.0 mm, with LLEG_JOINT4 at its limit (valid"),
+        (ANKLES, "misses by 20.0 mm, with LLEG_JOINT4, RLEG_JOINT4 at their limits (valid"),
+    ],
+)
+def test_a_foot_that_cannot_reach_its_place_says_which_joints_stop_it(
+    body: Body, stopped: tuple[str, ...], said: str
+) -> None:
+    start = stand(body, None, {})
+    for name in stopped:
+        limit(body, (name,), joint(body, start.configuration, name) - 0.005, 0.7)
+    places = {
+        foot: sole * pin.SE3(np.eye(3), np.array([0.02, 0.0, 0.0])) for foot, sole in start.soles.items()
+    }
+    with pytest.raises(MotionError, match=re.escape(f"foot cannot reach its place, it {said}")):
+        check_reached(body, start.configuration, places, "Walk")

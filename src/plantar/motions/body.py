@@ -20,6 +20,7 @@ from plantar.robot.model import Placement, RobotModel
 CHEST = "plantar.chest"
 REACHED = 1e-3  # m: how far a foot or the chest may be from where it should be
 STEPS = 3  # Gauss-Newton steps from one knot to the next
+AT_LIMIT = 0.01  # rad
 BENT = 0.5  # rad
 MOVED = 0.1  # rad: less is no bending
 
@@ -114,6 +115,19 @@ class Body:
         places = self._bounded[np.abs(moved[self._bounded]) > MOVED]
         low, high = self.model.lowerPositionLimit[places], self.model.upperPositionLimit[places]
         return float(np.min(np.where(moved[places] > 0, high - q[places], q[places] - low), initial=np.inf))
+
+    def at_limits(self, q: Array) -> str:
+        """Which joints of the legs are at their limits, as the end of a sentence; nothing where none is."""
+        places = self._bounded
+        low, high = self.model.lowerPositionLimit[places], self.model.upperPositionLimit[places]
+        numbers = {self.model.joints[joint].idx_q: joint for joint in self.leg_joints}
+        at = places[np.minimum(q[places] - low, high - q[places]) < AT_LIMIT]
+        names = [self.model.names[numbers[place]] for place in at]
+        return (
+            f", with {listing(names)} at {'its limit' if len(names) == 1 else 'their limits'}"
+            if names
+            else ""
+        )
 
     def shifted(self, q: Array, posture: Mapping[str, float]) -> Array:
         """A copy of `q` with some joints set."""

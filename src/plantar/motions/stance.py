@@ -130,6 +130,7 @@ def check_reached(
         miss = float(np.linalg.norm(body.pose(q, body.sole(name)).translation - target.translation))
         if miss > REACHED:
             message = f"{what}: the {name} foot cannot reach its place, it misses by {1e3 * miss:.1f} mm"
+            message += body.at_limits(q)
             raise MotionError(message, path=body.robot.name, time=time, valid="a smaller motion")
 
 

@@ -88,5 +88,6 @@ def _check_body(body: Body, q: Array, tasks: list[Task], name: str, time: float)
         short = float(np.linalg.norm(miss[asked]))
         if short > REACHED:
             message = f"{name}: the chest cannot reach its place, it falls short by {1e3 * short:.1f} mm"
+            message += body.at_limits(q)
             valid = "a smaller motion, or one that moves the arms only, such as Myrand5"
             raise MotionError(message, path=body.robot.name, time=time, valid=valid)
