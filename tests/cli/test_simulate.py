@@ -10,10 +10,12 @@ import pytest
 import yaml
 
 import command_line
+from plantar.cli.simulate import _bushes
+from plantar.errors import PlantarError
 from plantar.fleet.manifest import read_manifest
 from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
-from plantar.twin import fleet
+from plantar.twin import Bush, fleet
 from plantar.twin.robots.hrp2 import write
 from twin_samples import plan, planned_part, short
 
@@ -91,3 +93,13 @@ def test_what_is_wrong_is_said_in_one_line(
     assert line in said
     assert said.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["1000,20,800", "1000,20,800,16,4e5", "-1,20,800,16", "1e9,20,800,16", "nan,20,800,16"]
+)
+def test_a_bush_has_four_or_six_numbers_from_nothing_on(text: str) -> None:
+    assert _bushes("1000,0,800,0") == dict.fromkeys(("left", "right"), Bush(1000.0, 0.0, 800.0, 0.0))
+    assert _bushes("1000,20,800,16,4e5,1e3")["right"] == Bush(1000.0, 20.0, 800.0, 16.0, 4e5, 1e3)
+    with pytest.raises(PlantarError, match="--bush is not four or six numbers that are at least 0"):
+        _bushes(text)
