@@ -112,3 +112,15 @@ def test_an_attitudes_noise_is_what_the_gyroscope_does_not_turn() -> None:
     found = sole_velocity._attitude_noise(np.hstack([w, v]), rates, PERIOD)
     inside = slice(200, -200)
     assert found[inside] == pytest.approx(quick[inside, None] * axis, abs=1e-4)
+
+
+@pytest.mark.parametrize("count", [3, 100, 300])
+def test_short_logs_have_a_drift_and_some_noise_too(count: int) -> None:
+    """Of fewer samples than show how the slope changes in a second; 0.2 mm/s is the least that sensors have."""
+    seen = np.tile([0.3, -0.1], (count, 1))
+    value, deviation, noise = sole_velocity._drift(
+        seen, np.empty((0, count, 2)), np.zeros(count), 0 * seen, PERIOD
+    )
+    assert noise == 0.0002
+    np.testing.assert_allclose(value, seen, atol=1e-3)
+    assert (deviation > 0).all()
