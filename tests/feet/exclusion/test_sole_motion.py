@@ -150,6 +150,7 @@ def test_without_an_acceleration_there_is_no_velocity(world: World) -> None:
     for velocity in found.velocity.values():
         assert np.isnan(velocity[3000:3010]).all()
         assert np.isfinite(velocity[3010:-200]).all()
+    assert all(np.isfinite(deviation).all() for deviation in found.deviation.values())
 
 
 @pytest.mark.parametrize(("hertz", "passes"), [(5.0, 0.0), (20.0, 0.5), (60.0, 1.0)])

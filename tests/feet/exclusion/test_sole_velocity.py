@@ -82,6 +82,8 @@ def test_the_mean_square_of_an_acceleration_counts_what_is_within_a_tenth_of_a_s
         assert found[place] == pytest.approx(25 / count)
         assert found[place + 20] > 0 == found[place + 21]
         assert found[6000] == 0
+    acceleration[8000] = np.nan
+    assert sole_velocity._mean_square(acceleration, PERIOD)[9000] == 0
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.7, -2.0])
@@ -114,13 +116,11 @@ def test_an_attitudes_noise_is_what_the_gyroscope_does_not_turn() -> None:
     assert found[inside] == pytest.approx(quick[inside, None] * axis, abs=1e-4)
 
 
-@pytest.mark.parametrize("count", [3, 100, 300])
-def test_short_logs_have_a_drift_and_some_noise_too(count: int) -> None:
-    """Of fewer samples than show how the slope changes in a second; 0.2 mm/s is the least that sensors have."""
-    seen = np.tile([0.3, -0.1], (count, 1))
-    value, deviation, noise = sole_velocity._drift(
-        seen, np.empty((0, count, 2)), np.zeros(count), 0 * seen, PERIOD
-    )
-    assert noise == 0.0002
-    np.testing.assert_allclose(value, seen, atol=1e-3)
-    assert (deviation > 0).all()
+def test_a_sensor_has_some_noise_always() -> None:
+    assert sole_velocity._drift(STILL, NO_CAUSES, STILL[:, 0], STILL, PERIOD)[2] == 0.0002
+
+
+def test_what_moves_as_noise_does_is_as_unsure() -> None:
+    velocity = np.random.default_rng(0).normal(0, 0.01, STILL.shape)
+    found = sole_velocity._deviation(velocity, 0.003, STILL[:, 0], STILL[:, 0])
+    assert found == pytest.approx(0.01, rel=0.03)
