@@ -101,7 +101,6 @@ class FootTracker {
   bool leans(const FootKinematics& motion, double inside, double dt) noexcept;
   void close_blocks() noexcept;
   void publish(int axis) noexcept;
-  void publish_compliance() noexcept;
 
   const FootModel* foot_;
   double weight_, least_load_;
