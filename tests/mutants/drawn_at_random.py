@@ -104,4 +104,11 @@ DRAWN_AT_RANDOM = (
         "in (joints[::-1],)",
         ("design/test_collision.py",),
     ),
+    Mutant(
+        "feet/prepare.py",
+        "heights by soles that slide",
+        "heights_of(robot, flat) if",
+        "heights_of(robot, recording) if",
+        ("feet/test_prepare.py",),
+    ),
 )

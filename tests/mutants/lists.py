@@ -27,6 +27,7 @@ from other_robots import OTHER_ROBOTS
 from seldom_run import SELDOM_RUN
 from sensor_faults import SENSOR_FAULTS
 from shared_work import SHARED_WORK
+from soles_and_freedom import SOLES_AND_FREEDOM
 from standing_soles import STANDING_SOLES
 from unlisted import UNLISTED
 
@@ -56,6 +57,7 @@ LISTS = {
     "other_robots": OTHER_ROBOTS,
     "unlisted": UNLISTED,
     "drawn_at_random": DRAWN_AT_RANDOM,
+    "soles_and_freedom": SOLES_AND_FREEDOM,
     "seldom_run": SELDOM_RUN,
     "by_hand": BY_HAND,
 }
