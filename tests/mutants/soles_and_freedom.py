@@ -1,4 +1,4 @@
-"""Careless changes of the soles' velocity and of what a fit says of its freedom, that no test of their rooms noticed."""
+"""Careless changes of the soles' velocity and of what a fit says of its freedom that no test of their rooms noticed."""
 
 from __future__ import annotations
 
