@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Axis = Literal["pitch", "roll", "z"]
 
+YEAR: Final = 365.25  # days
+MONTH: Final = YEAR / 12
 GRAVITY: Final = 9.80665  # m/s², standard gravity
 NORMAL95: Final = 1.96  # deviations that a 95 % interval of a normal value reaches
 UNIFORM: Final = 3**-0.5  # of its bounds: the deviation of what lies anywhere within (GUM, type B)

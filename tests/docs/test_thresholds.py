@@ -20,8 +20,9 @@ from plantar.feet.place import place_notes, spread
 from plantar.model_selection import cross_validation, selection
 from plantar.motions import gait
 from plantar.robot.uncertainty import Uncertainty
-from plantar.sensors import attitude_scale, moment_errors, moment_fit
+from plantar.sensors import attitude_scale
 from plantar.sensors.delays import lagged_log
+from plantar.sensors.moments import law_rows, moment_fit
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {3: "three", 5: "five"}
@@ -48,7 +49,7 @@ def page(name: str) -> str:
         ("why_did_my_fit_fail.md", f"allows for ±{1e3 * 1.96 * Uncertainty().wrench_delay:.0f} ms (95 %)"),
         ("intervals.md", f"lowest cosines, up to {residual_covariance.SCORE_BANDWIDTH:.1f} Hz"),
         ("intervals.md", f"(one chance in {1 / moment_fit.CHANCE:.0f})"),
-        ("intervals.md", f"Only what is slower than {moment_errors.BAND:.0f} Hz is asked"),
+        ("intervals.md", f"Only what is slower than {law_rows.BAND:.0f} Hz is asked"),
         ("intervals.md", f"({1e3 * spread.GUESSED:.0f} mm for a line marked GUESS)"),
         ("intervals.md", f"From {WORDS[stance_least_squares.FEWEST_RECORDINGS]} recordings on, refits"),
         ("intervals.md", f"cosines of {slow_drift.DRIFT_PERIOD:.0f} s and longer"),

@@ -149,8 +149,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "feet/interval_width/between_recordings.py",
         "a deviation taken off a variance",
-        "refits - fit_blocks(blocks).std ** 2",
-        "refits - fit_blocks(blocks).std",
+        "refits - tangent.least_squares.std**2",
+        "refits - tangent.least_squares.std",
         ("feet/interval_width/test_between_recordings.py",),
     ),
     Mutant(

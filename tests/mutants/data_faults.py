@@ -30,7 +30,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/late_recordings.py", "a memory is a late recording",
-        "fit_blocks(tangent).squares < found.squares", "fit_blocks(tangent).squares < 0.0",
+        "tangent.least_squares.squares < found.squares", "tangent.least_squares.squares < 0.0",
         ("feet/assess/test_late_recordings.py",),
     ),
     Mutant(
@@ -137,7 +137,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/place/turned_bush.py", "no step shows a turned bush",
-        "    if blocks[0].stances is None:\n        return None", "    if True:\n        return None",
+        "    if not tangent.steps:\n        return None", "    if True:\n        return None",
         ("feet/test_steps.py",),
     ),
     Mutant(
@@ -233,7 +233,7 @@ DATA_FAULTS = (
         ("feet/put_right/test_imu_of_steps.py",),
     ),
     Mutant(
-        "feet/interval_width/imu_turn.py", "an unknown mount widens nothing", "np.sum(effects**2, axis=1)",
+        "feet/interval_width/sensor_causes.py", "an unknown mount widens nothing", "np.sum(effects**2, axis=1)",
         "0 * np.sum(effects**2, axis=1)",
         ("feet/put_right/test_imu_of_steps.py",),
     ),
@@ -278,8 +278,8 @@ DATA_FAULTS = (
         "abs(moved) < PART * NORMAL95 * float(wide.std[RATE])", "False", ("feet/assess/test_sensor_hysteresis.py",),
     ),
     Mutant(
-        "feet/interval_width/joint_compliance.py", "joints bend half as much", "bent)[:size], compliance)",
-        "bent)[:size], compliance / 2)", ("feet/interval_width/test_joint_compliance.py",),
+        "feet/interval_width/joint_compliance.py", "joints bend half as much", "changes)[:size], compliance)",
+        "changes)[:size], compliance / 2)", ("feet/interval_width/test_joint_compliance.py",),
     ),
     Mutant(
         "feet/assess/contradiction.py", "drift contradicts the fit",

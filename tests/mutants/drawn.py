@@ -129,7 +129,7 @@ FIT = (
     ),
     Mutant(
         "feet/interval_width/yaw_zero.py", "sine of roll instead of pitch",
-        "one.bushes[foot].deflection[one.rows(foot), 0]", "one.bushes[foot].deflection[one.rows(foot), 1]",
+        "one.bushes[fit.foot].deflection[:, 0]", "one.bushes[fit.foot].deflection[:, 1]",
     ),
     Mutant(
         "feet/interval_width/cause.py", "degrees of freedom from deviations, not variances",

@@ -223,7 +223,7 @@ DRAWN_ANEW = (
         "abs(share) * longest < LEAST",
     ),
     Mutant(
-        "sensors/moment_balance.py",
+        "sensors/moments/torque_gains.py",
         "no least gain",
         "usual = max(robot.uncertainty.wrench_gain, LEAST_GAIN)",
         "usual = robot.uncertainty.wrench_gain",

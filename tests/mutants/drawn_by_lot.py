@@ -158,11 +158,11 @@ DRAWN_BY_LOT = (
         "elif corners is None:",
     ),
     Mutant(
-        "sensors/moment_errors.py",
+        "sensors/moments/sensor_errors.py",
         "an arm makes forces of torques",
         "np.block([[none, none], [cross, none]]), place)",
         "np.block([[none, cross], [none, none]]), place)",
-        ("sensors/test_sensor_errors.py",),
+        ("sensors/moments/test_sensor_errors.py",),
     ),
     Mutant(
         "model_selection/variable_projection.py",

@@ -85,7 +85,7 @@ DRAWN_EVERYWHERE = (
     Mutant(
         "sensors/air_zero.py",
         "scatter of swings without the normal factor",
-        "scatter = 1.4826 * np.median",
+        "scatter = NORMAL * np.median",
         "scatter = np.median",
         ("sensors/test_air_zero.py",),
     ),

@@ -21,8 +21,8 @@ MADE_CHEAPER = (
     ),
     Mutant(
         "feet/interval_width/systematic.py", "a suspected cube widens nothing",
-        "def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:\n",
-        "def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:\n"
+        "def _suspected_hardening(tangent: Tangent) -> list[Cause]:\n",
+        "def _suspected_hardening(tangent: Tangent) -> list[Cause]:\n"
         "    return []\n",
         ("feet/interval_width/test_systematic.py",),
     ),

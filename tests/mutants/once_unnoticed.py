@@ -50,8 +50,8 @@ GUARDS = (
         ("faults/test_load_signs.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the bush's axes taken for the sensor's",
-        "np.asarray((bush.T @ sensor)[[1, 0]])", "np.eye(3)[[1, 0]]", ("sensors/test_sensor_errors.py",),
+        "sensors/moments/sensor_errors.py", "the bush's axes taken for the sensor's",
+        "np.asarray((bush.T @ sensor)[[1, 0]])", "np.eye(3)[[1, 0]]", ("sensors/moments/test_sensor_errors.py",),
     ),
     Mutant(
         "contact/sole_height.py", "holes reach the samples beside them",
@@ -211,9 +211,7 @@ DRAWN_BLINDLY = (
         ("logs/readers/test_csv_text.py",),
     ),
     Mutant(
-        "logs/readers/tables/csv_text.py", "what is inside the inflater is lost",
-        "if text := inflater.flush():",
-        'if text := b"":',
+        "logs/readers/tables/csv_text.py", "a cut file is broken", "except EOFError:", "except KeyError:",
         ("logs/readers/test_csv_text.py",),
     ),
     Mutant(

@@ -22,8 +22,8 @@ SENSOR_FAULTS = (
         ("sensors/test_newton_euler.py",),
     ),
     Mutant(
-        "sensors/moment_balance.py", "torques wrong about one axis are right about the other", "> ALSO * wrong_by**2",
-        "> 10 * wrong_by**2", ("sensors/test_moment_balance.py",),
+        "sensors/moments/torque_gains.py", "torques wrong about one axis are right about the other",
+        "> ALSO * wrong_by**2", "> 10 * wrong_by**2", ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
         "signals/dropouts.py", "a coarse encoder near zero drops out", "LEAST = 0.01", "LEAST = 0.0",
@@ -42,41 +42,41 @@ SENSOR_FAULTS = (
         "log.period < QUICK * (mean", "log.period < 4 * (mean", ("faults/test_log_faults.py",),
     ),
     Mutant(
-        "sensors/moment_fit.py", "another unit hides behind its prior",
-        "STRAINED = 2.0", "STRAINED = 200.0", ("sensors/test_moment_balance.py",),
+        "sensors/moments/moment_fit.py", "another unit hides behind its prior",
+        "STRAINED = 2.0", "STRAINED = 200.0", ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
-        "sensors/moment_fit.py", "no URDF is wrong", "np.ones(links)", "np.full(links, 1e-6)",
-        ("sensors/test_moment_fit.py",),
+        "sensors/moments/moment_fit.py", "no URDF is wrong", "np.ones(links)", "np.full(links, 1e-6)",
+        ("sensors/moments/test_moment_fit.py",),
     ),
     Mutant(
         "sensors/below_sensor.py", "a foot that still carries a little swings", "(1 + strays) ** 2", "(1 + 0 * strays)",
         ("sensors/test_below_sensor.py",),
     ),
     Mutant(
-        "sensors/moment_balance.py", "a foot is judged by itself where nothing tells it from the other", "APART = 2.0",
-        "APART = 200.0", ("sensors/test_moment_balance.py",),
+        "sensors/moments/torque_gains.py", "a foot is judged by itself where nothing tells it from the other",
+        "APART = 2.0", "APART = 200.0", ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
-        "sensors/moment_balance.py", "no foot is judged by itself", "APART = 2.0", "APART = 0.0",
-        ("sensors/test_moment_balance.py",),
+        "sensors/moments/torque_gains.py", "no foot is judged by itself", "APART = 2.0", "APART = 0.0",
+        ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
-        "sensors/moment_fit.py", "all logs have the same zeros, none",
-        "share = np.linalg.solve(", "share = 0 * np.linalg.solve(", ("sensors/test_moment_fit.py",),
+        "sensors/moments/elimination.py", "all logs have the same zeros, none",
+        "share = np.linalg.solve(", "share = 0 * np.linalg.solve(", ("sensors/moments/test_moment_fit.py",),
     ),
     Mutant(
         "feet/prepare_log.py", "what soles have put right stays a fault",
         "if note.code not in noted", "if note.code not in () and noted is not None", ("sensors/test_tilt_error.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "a walk is as slow as a sway",
+        "sensors/moments/law_rows.py", "a walk is as slow as a sway",
         "quick if steps else low_pass", "quick if False else low_pass",
-        ("sensors/test_moment_balance.py",),
+        ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the noise of readings is arms", "below * _products(row",
-        "0 * below * _products(row", ("sensors/test_moment_balance.py",),
+        "sensors/moments/moment_errors.py", "the noise of readings is arms", "below * _products(row",
+        "0 * below * _products(row", ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
         "robot_guess/passive.py", "a foot may push the way it tilts",
@@ -135,7 +135,7 @@ SENSOR_FAULTS = (
     Mutant(
         "sensors/newton_euler.py", "what hangs below the sensors moves with the robot",
         "parameters, predicted = parameters - below.parameters, predicted - hangs", "pass",
-        ("sensors/test_newton_euler.py", "sensors/test_below_sensor.py", "sensors/test_moment_balance.py"),
+        ("sensors/test_newton_euler.py", "sensors/test_below_sensor.py", "sensors/moments/test_torque_gains.py"),
     ),
     Mutant(
         "sensors/bandwidth.py", "any slope is a filter", "abs(found.slope) < SURE * found.std", "False",
@@ -146,12 +146,12 @@ SENSOR_FAULTS = (
         ("sensors/test_bandwidth.py",),
     ),
     Mutant(
-        "sensors/sensor_turns.py", "a turn that is hardly known is told", "and is_wrong(", "and not is_wrong(",
-        ("sensors/test_sensor_turns.py",),
+        "sensors/moments/sensor_turns.py", "a turn that is hardly known is told", "and is_wrong(", "and not is_wrong(",
+        ("sensors/moments/test_sensor_turns.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "a sensor's place is its turn", "place * own + 4 for", "place * own + 1 for",
-        ("sensors/test_sensor_turns.py",),
+        "sensors/moments/sensor_errors.py", "a sensor's place is its turn",
+        "place * own + 4 for", "place * own + 1 for", ("sensors/moments/test_sensor_turns.py",),
     ),
     Mutant(
         "faults/bush_frames.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
@@ -228,14 +228,14 @@ SENSOR_FAULTS = (
         "linalg.inv(1e4 * _prior(", ("sensors/test_load_errors.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "what is missing lost other slow parts than its columns",
+        "sensors/moments/law_rows.py", "what is missing lost other slow parts than its columns",
         "missing = predicted - np.sum([one.measured for one in read], axis=0)",
         "missing = residual.pair.predicted - residual.pair.measured",
-        ("sensors/test_moment_fit.py",),
+        ("sensors/moments/test_moment_fit.py",),
     ),
     Mutant(
-        "sensors/moment_fit.py", "parts that are left out are as good as all", "(len(parts) - 1) / len(parts) * (apart",
-        "1 / len(parts) * (apart", ("sensors/test_moment_fit.py",),
+        "sensors/moments/moment_fit.py", "parts that are left out are as good as all",
+        "(len(parts) - 1) / len(parts) * (apart", "1 / len(parts) * (apart", ("sensors/moments/test_moment_fit.py",),
     ),
     Mutant(
         "feet/fit/hidden_memory.py", "a memory that is hardly known hides nothing",
@@ -255,11 +255,11 @@ SENSOR_FAULTS = (
         ("faults/joints/test_still_joints.py",),
     ),
     Mutant(
-        "signals/slow_cosines.py", "the quickest of the slow cosines stays", "slowest * len(rows) * period) + 1",
+        "signals/filters.py", "the quickest of the slow cosines stays", "slowest * len(rows) * period) + 1",
         "slowest * len(rows) * period)", ("signals/test_slow_cosines.py",),
     ),
     Mutant(
-        "signals/slow_cosines.py", "a constant stays", "np.arange(count) * (", "np.arange(1, count + 1) * (",
+        "signals/filters.py", "a constant stays", "np.arange(count) * (", "np.arange(1, count + 1) * (",
         ("signals/test_slow_cosines.py",),
     ),
     Mutant(

@@ -7,7 +7,7 @@ from mutant import Mutant
 IMU = ("contact/test_standing_imu.py",)
 NEWTON = ("sensors/test_newton_euler.py",)
 TOLD = ("sensors/delays/test_told_delay.py",)
-MOMENTS = ("sensors/test_moment_balance.py",)
+MOMENTS = ("sensors/moments/test_torque_gains.py",)
 SHARED = ("feet/test_shared_hysteresis.py",)
 
 STANDING_SOLES = (
@@ -73,14 +73,14 @@ STANDING_SOLES = (
         ("sensors/delays/test_lagged_log.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py",
+        "sensors/moments/law_rows.py",
         "about the root",
         "rows[..., TORQUE] - np.cross(centre, rows[..., FORCE])",
         "rows[..., TORQUE]",
         MOMENTS,
     ),
     Mutant(
-        "sensors/moment_errors.py",
+        "sensors/moments/law_rows.py",
         "rows without forces",
         "range(6) if centre is None else range(6)[TORQUE]",
         "range(6)",
@@ -105,8 +105,8 @@ STANDING_SOLES = (
     Mutant(
         "feet/interval_width/systematic.py",
         "feet that stand know their angle",
-        "        _angle_errors(fit, blocks, shared),\n",
-        "        *([_angle_errors(fit, blocks, shared)] if blocks[0].stances else []),\n",
+        "        _angle_errors(tangent),\n",
+        "        *([_angle_errors(tangent)] if tangent.steps else []),\n",
         ("feet/interval_width/test_systematic.py",),
     ),
 )

@@ -20,10 +20,10 @@ from plantar.sensors.delays.clock_drift import ClockDrift
 from plantar.sensors.delays.delays_by_log import DelaysByLog
 from plantar.sensors.delays.sensor_delay import known_delay
 from plantar.sensors.imu_filter import ImuFilter, imu_filter, with_gyroscopes_on_time
-from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes
-from plantar.sensors.moment_errors import turn_columns
-from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
-from plantar.sensors.sensor_turns import sensor_turn_notes
+from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.moments.sensor_errors import turn_columns
+from plantar.sensors.moments.sensor_turns import sensor_turn_notes
+from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes
 from plantar.signals.gyroscope_delay import GyroscopeDelay
 
 WEIGHT = 700.0

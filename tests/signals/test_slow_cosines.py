@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.signals.slow_cosines import without_slow_cosines
+from plantar.signals.filters import without_slow_cosines
 
 PERIOD, SLOWEST = 0.05, 0.05
 SHORT, LONG = 1200, 12001

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import moment_errors
-from plantar.sensors.moment_fit import MomentFit, moments_of
+from plantar.sensors.moments.moment_errors import moment_errors
+from plantar.sensors.moments.moment_fit import MomentFit, moments_of
 from plantar.sensors.newton_euler import NewtonEulerResidual
 
 

@@ -16,7 +16,7 @@ from plantar.signals.segments import runs
 SLIP_CUTOFF = 10.0  # Hz: motion of the soles above it is noise
 RINGING = 0.07  # by which this filter overshoots a step, within a period of the cutoff
 LEAST_SPEED = 0.002  # m/s, and for yaw at the moment arm of half a sole, rad/s times YAW_MOMENT_ARM
-YAW_MOMENT_ARM = 0.1  # m
+YAW_MOMENT_ARM = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
 USUAL = 80  # percent of the samples are slower than the noise's usual speed, however much slides
 USUAL_SPEED = 1.794  # that percentile of a plane vector's length, in deviations of its components
 QUIETEST = 1e-6  # m/s: less is no noise

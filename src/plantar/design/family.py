@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.motions.footsteps import REST
 from plantar.motions.profile import window
 
 # The centre of mass forward, across the line through the feet, left, along it, and up [m], the root link about x and y
@@ -27,7 +28,6 @@ MIRRORED: Final = {
     "left.roll": ("right.roll", -1.0), "left.pitch": ("right.pitch", 1.0),
     "right.roll": ("left.roll", -1.0), "right.pitch": ("left.pitch", 1.0),
 }  # fmt: skip
-REST: Final = 2.0  # s of standing still before and after
 RAMP: Final = 4.0  # s in which each half swells and dies away
 LINES: Final = 2  # sines of each channel
 SHAPES: Final = 1 + 2 * LINES  # of each channel: a place to be at, and the sine and cosine of each line

@@ -25,7 +25,6 @@ REACHED: Final = 1e-6  # m and rad: less is not worth a step
 MISSED: Final = 1e-3  # m and rad: more is out of reach
 RISE: Final = 0.03  # of the centre of mass' height: knees are bent so far that the robot can rise by it
 LOWERED: Final = np.arange(0.0, 0.151, 0.01)  # of that height: tried in this order
-BENT: Final = 0.5  # rad
 SPARE: Final = 0.03  # rad of every joint of the legs to its limit while standing
 DAMPING: Final = 1e-8  # of the least squares: a leg that is nearly straight turns slowly instead of wildly
 
@@ -84,10 +83,13 @@ class Legs:
         poses = {foot: self._pose(q, frame) for foot, frame in self.bushes.items()}
         high = np.array(pin.centerOfMass(self.model, self.data, q))
         high[:2] = np.mean([pose.translation[:2] for pose in poses.values()], axis=0)
-        bent = self._bent(q)
+        bent = self.body.bent(q)
         for lower in LOWERED:
             centre = high * [1.0, 1.0, 1.0 - lower]
-            tasks = [*self.body.foot_tasks(self.start.soles), self.body.root_task(upright)]
+            tasks = [
+                *self.body.foot_tasks(self.start.soles),
+                self.body.root_task(pin.SE3(upright, np.zeros(3))),
+            ]
             near = self.body.solve(bent, [*tasks, self.body.centre_task(centre, height=10.0)], bent, SETTLE)
             try:
                 near = self._with_legs_of(near, self.upper)
@@ -122,13 +124,6 @@ class Legs:
         single = (joint for joint in self.model.joints[2:] if joint.nq == 1)
         places = [joint.idx_q for joint in single if joint.idx_v in self.columns]
         return [(place, low[place], high[place]) for place in places if low[place] < high[place]]
-
-    def _bent(self, q: Array) -> Array:
-        """A configuration with every joint of the legs towards the middle of its range: knees bend the right way."""
-        bent = q.copy()
-        for place, low, high in self._bounded:
-            bent[place] = np.clip((low + high) / 2, -BENT, BENT)
-        return bent
 
     def _inside(self, q: Array) -> bool:
         """Whether every bounded joint of the legs is within its limits, with a little room."""

@@ -6,14 +6,10 @@ rtmros_choreonoid (hrpsys_choreonoid/config) read them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from plantar.exporters.job import Job
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 
 def write(job: Job, notes: Notes) -> str:

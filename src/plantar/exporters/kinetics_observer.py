@@ -12,18 +12,16 @@ is roll and y pitch only as long as the robot faces the world's x.
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import yaml
 
 from plantar.conventions import Axis
 from plantar.errors import ExportError
+from plantar.exporters.job import Job
+from plantar.exporters.openhrp import LIMIT
 from plantar.files import read_bounded
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 # Key -> (attribute of the spring, axes in order x y z, the observer's default).
 ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {
@@ -32,7 +30,6 @@ ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {
     "linDamping": ("damping", (None, None, "z"), 120.0),
     "angDamping": ("damping", ("roll", "pitch", None), 12.0),
 }
-LIMIT: Final = 2**20  # bytes
 
 
 def read_contacts(path: str | os.PathLike[str]) -> dict[Axis, tuple[float, float]]:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import yaml
 
+from plantar.exporters.job import Job
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 HYSTERESIS = True  # every number is kept
 KEPT = ("value", "unit", "std", "interval95", "verdict")

@@ -9,19 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import yaml
 
 from plantar.conventions import NORMAL95, STIFFNESS_UNIT, Array
 from plantar.exporters.bush import FootBush
+from plantar.exporters.job import Job
 from plantar.exporters.source import robot_model
 from plantar.notes import Notes
 from plantar.robot.uncertainty import Uncertainty
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 HYSTERESIS = True  # for models of `mjcf`, which hold it
 SCHEMA: Final = "plantar.randomization/1"

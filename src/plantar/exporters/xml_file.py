@@ -11,14 +11,14 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.files import read_bounded
+from plantar.robot.urdf import LIMIT
 
-MODEL_LIMIT = 64 * 2**20  # bytes
 DEPTH_LIMIT = 200  # levels of nesting: a humanoid's MJCF has about fifteen
 
 
 def load_xml(path: Path, root_tag: str) -> ET.Element:
     """The file's root element. ExportError: unreadable, an entity, too deep, or another kind of file."""
-    content = read_bounded(path, MODEL_LIMIT, ExportError)
+    content = read_bounded(path, LIMIT, ExportError)
     try:
         root = ET.fromstring(content, parser=ET.XMLParser(target=_Bounded(path)))
     except (ET.ParseError, ValueError) as error:

@@ -21,24 +21,22 @@ from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import Apart
 from plantar.feet.interval_width.cause import inflated
-from plantar.feet.interval_width.encoder_delay import encoder_delay_causes
-from plantar.feet.interval_width.fading import fading_causes
 from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
-from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.joint_compliance import joint_compliance_causes
-from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.sensor_causes import encoder_delay_causes, fading_causes, imu_turn_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
-from plantar.feet.interval_width.systematic import systematic_causes
-from plantar.feet.place.far_arms import far_arms
+from plantar.feet.interval_width.systematic import robot_causes, systematic_causes
 from plantar.feet.place.misread_joints import OUT_OF_TIME, misread_joint_notes
+from plantar.feet.place.place_notes import far_arms
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.regression_data import recordings_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 from plantar.robot.guesses import naming_notes
 from plantar.sensors.attitude_scale import ATTITUDE_SCALE
-from plantar.sensors.moment_balance import torque_gain_notes
+from plantar.sensors.moments.torque_gains import torque_gain_notes
 
 
 @dataclass(frozen=True)
@@ -77,16 +75,15 @@ def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
 def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     ready, thin = fitted.ready, fitted.thin
-    shared = ready.settings.offset == "shared"
-    blocks = tangent_blocks(thin.fitted, fit, drift=not shared)
-    steps = blocks[0].stances is not None
-    causes = systematic_causes(fit, blocks, thin.fitted, ready.sensor_delay, ready.vertical, shared)
-    causes += robot_causes(fit, blocks, thin.fitted, ready.robot.uncertainty.wrench_gain, between, shared)
-    causes += slip_angle_causes(fit, thin.fitted, shared)
-    causes += encoder_delay_causes(fit, blocks, thin.fitted, ready.sensor_delay.encoders_std, shared)
-    causes += joint_compliance_causes(ready.robot, fit, blocks, ready.fitted, shared)
-    causes += fading_causes(fit, blocks, thin.fitted, ready.slow_filter, shared)
-    causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)
+    tangent = Tangent.of(fit, thin.fitted, ready.settings.shared)
+    with_logs = replace(tangent, recordings=recordings_of(tangent.blocks, ready.fitted))
+    causes = systematic_causes(tangent, ready.sensor_delay, ready.vertical)
+    causes += robot_causes(tangent, ready.robot.uncertainty.wrench_gain, between)
+    causes += slip_angle_causes(tangent)
+    causes += encoder_delay_causes(tangent, ready.sensor_delay.encoders_std)
+    causes += joint_compliance_causes(ready.robot, with_logs)
+    causes += fading_causes(tangent, ready.slow_filter)
+    causes += imu_turn_causes(tangent, ready.imu_turn)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
     wide = inflated(fit, causes)
@@ -99,12 +96,12 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     walks = walk_stiffness(ready.recordings, wide)
     own = [
-        *play_notes(thin.fitted, wide, blocks, shared),
-        *hysteresis_notes(thin.fitted, wide, blocks, shared),
-        *misread_joint_notes(ready.robot, ready.fitted, wide, blocks, shared),
-        *late_recordings(wide, blocks, shared),
-        *odd_recordings(wide, blocks, shared),
-        *odd_walks(wide, walks, thin.fitted, blocks),
+        *play_notes(tangent, wide),
+        *hysteresis_notes(tangent, wide),
+        *misread_joint_notes(ready.robot, with_logs, wide),
+        *late_recordings(tangent, wide),
+        *odd_recordings(tangent, wide),
+        *odd_walks(tangent, wide, walks),
     ]
     faults = [
         *data_faults(ready.fitted, fit),
@@ -119,14 +116,14 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     ]
     # Behind the others: a mass, a gain or a delay that is wrong looks like one. Steps hardly tell how far a bush is.
     # Bush and sensor have one height: what is far about one axis is trusted about neither.
-    far = far_arms([*fitted.fits.values()]) if fitted.place.measured and not steps else []
+    far = far_arms([*fitted.fits.values()]) if fitted.place.measured and not tangent.steps else []
     # What is left of a foot on its edge is flat, and no number is doubted; what most of it could tell comes first.
     first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *(faults or far)]
     return FootFit(
         fits=[*found.fits, wide],
         parameters=[
             *found.parameters,
-            *mend_first(doubted(advised(rows, limits), [*faults, *far], steps=steps), first),
+            *mend_first(doubted(advised(rows, limits), [*faults, *far], steps=tangent.steps), first),
         ],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],

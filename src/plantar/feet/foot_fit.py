@@ -20,15 +20,14 @@ from plantar.feet.interval_width.between_recordings import (
     recordings_apart,
 )
 from plantar.feet.interval_width.cause import inflated
-from plantar.feet.interval_width.robot_causes import robot_causes
-from plantar.feet.interval_width.systematic import systematic_causes
+from plantar.feet.interval_width.systematic import robot_causes, systematic_causes
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.place.told_exact import as_measured, shown_elsewhere
 from plantar.feet.place.turned_bush import turned_bush_note
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
 
@@ -73,7 +72,7 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
         ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
         thin = _thin(ready, foot)
         fits = _fits(thin, foot, place, fits, given_up)
-    shared = ready.settings.offset == "shared"
+    shared = ready.settings.shared
     with gives_up("pitch", given_up):
         if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
             fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
@@ -96,7 +95,7 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
     for one in feet:
         for axis, fit in one.fits.items():
             with gives_up(axis, one.given_up):
-                own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
+                own = axis_differences(Tangent.of(fit, one.thin.fitted, one.ready.settings.shared))
                 told += [] if own is None else [own]
     unsure = [one.ready.robot.uncertainty for one in feet]
     prior, exact = max(each.between_recordings for each in unsure), all(each.exact for each in unsure)
@@ -133,14 +132,10 @@ def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:
 
 def _with_causes(fit: AxisFit, fitted: FittedFoot, between: Apart) -> AxisFit:
     """The fit with the deviations of what is unsure, but for gains and mounts that other logs and feet tell of."""
-    ready, recordings = fitted.ready, fitted.thin.fitted
-    shared = ready.settings.offset == "shared"
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
-    causes = systematic_causes(fit, blocks, recordings, ready.sensor_delay, ready.vertical, shared)
-    return inflated(
-        fit,
-        causes + robot_causes(fit, blocks, recordings, ready.robot.uncertainty.wrench_gain, between, shared),
-    )
+    ready = fitted.ready
+    tangent = Tangent.of(fit, fitted.thin.fitted, ready.settings.shared)
+    causes = systematic_causes(tangent, ready.sensor_delay, ready.vertical)
+    return inflated(fit, causes + robot_causes(tangent, ready.robot.uncertainty.wrench_gain, between))
 
 
 def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:

@@ -36,13 +36,13 @@ from plantar.sensors.accelerometer_delay import imu_delay, with_imus_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import Fading, fading, fading_notes, slow_filter
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
-from plantar.sensors.delays.torque_delay import torque_delay_notes
 from plantar.sensors.imu_filter import imu_filter, with_gyroscopes_on_time
-from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
-from plantar.sensors.moment_errors import MomentErrors, moment_errors
-from plantar.sensors.moment_fit import moments_of
+from plantar.sensors.moments.moment_errors import MomentErrors, moment_errors
+from plantar.sensors.moments.moment_fit import moments_of
+from plantar.sensors.moments.sensor_turns import sensor_turn_notes
+from plantar.sensors.moments.torque_delay import torque_delay_notes
+from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.newton_euler import NewtonEulerResidual
-from plantar.sensors.sensor_turns import sensor_turn_notes
 from plantar.sensors.tilt_error import NO_TILT_ERROR
 
 Progress = Callable[[str], None]

@@ -18,8 +18,8 @@ from plantar.feet.assumptions import assumptions
 from plantar.feet.fit.compliances import share_apart
 from plantar.feet.foot_assessment import FootFit
 from plantar.feet.interval_width.between_recordings import Apart, apart_notes
-from plantar.feet.place.far_arms import far_arms
 from plantar.feet.place.imu_mount import ImuTurn
+from plantar.feet.place.place_notes import far_arms
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.put_right.imu_of_steps import imu_turn_notes
 from plantar.feet.recording import Recording

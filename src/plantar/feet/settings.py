@@ -8,13 +8,13 @@ from typing import Any, Final, Literal, get_args
 
 from plantar.choices import number_in, one_of
 from plantar.models import MODELS
+from plantar.signals.filters import LOWEST_CUTOFF
 
 OffsetRule = Literal["per-motion", "shared"]
 AUTOMATIC: Final = "auto"
 MODEL_CHOICES: Final = (AUTOMATIC, *MODELS)
 DEFAULT_CUTOFF: Final = 5.0  # Hz: sways of a robot are slower, and encoders differentiated are noise above
 
-LOWEST_CUTOFF: Final = 0.1  # Hz: below it nothing of a sway is left
 LEAST_WINDOW: Final = math.radians(0.01)  # rad: finer than a good encoder
 LONGEST_DELAY: Final = 1.0  # s: a sensor that is later has another fault than a delay
 
@@ -65,6 +65,11 @@ class FeetSettings:
             "wrench_delay", self.wrench_delay, -LONGEST_DELAY, LONGEST_DELAY, "s",
             optional="estimated from the data",
         )  # fmt: skip
+
+    @property
+    def shared(self) -> bool:
+        """Whether all recordings have one offset."""
+        return self.offset == "shared"
 
     @property
     def highest_cutoff(self) -> float:

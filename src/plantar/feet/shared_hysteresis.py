@@ -14,7 +14,6 @@ import numpy as np
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES
 from plantar.estimation.errors_in_variables import mostly_error
-from plantar.feet.assess.verdicts import WEAK_WIDTH
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
 from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, SMALL, has_memory, only_too_small, rival, slope_share
@@ -25,6 +24,7 @@ from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
+from plantar.results.feet_rows import WEAK_WIDTH
 
 # Times the angle at which elements of other axes slip: in motions that bend an axis less, an element is a spring as
 # well, and one that was found there may be taken for none again.

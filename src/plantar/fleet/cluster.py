@@ -14,7 +14,6 @@ from plantar.errors import PlantarError, needs
 from plantar.fleet.places import is_remote
 
 CONNECT: Final = 30  # s to wait for a scheduler
-SHARE: Final = 0.25  # of a worker's memory for the numbers of a group's logs, as for a machine's elsewhere
 
 SMALL: Final = {
     "distributed.worker.profile.enabled": False,  # a call tree a second, kept for an hour

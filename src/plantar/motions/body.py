@@ -20,6 +20,7 @@ from plantar.robot.model import Placement, RobotModel
 CHEST = "plantar.chest"
 REACHED = 1e-3  # m: how far a foot or the chest may be from where it should be
 STEPS = 3  # Gauss-Newton steps from one knot to the next
+BENT = 0.5  # rad
 
 
 class Body:
@@ -84,6 +85,21 @@ class Body:
                     q[joint.idx_q] = np.clip(q[joint.idx_q], low + margin, high - margin)
         return q
 
+    @cached_property
+    def leg_joints(self) -> frozenset[int]:
+        """Numbers of the joints that carry a foot, the root's among them."""
+        frames = [self.model.frames[self.model.getFrameId(self.sole(foot))] for foot in self.robot.feet]
+        return frozenset(joint for frame in frames for joint in self.model.supports[frame.parentJoint])
+
+    def bent(self, q: Array) -> Array:
+        """A copy of `q` with every joint of the legs towards the middle of its range: knees bend the right way."""
+        bent, (low, high) = q.copy(), (self.model.lowerPositionLimit, self.model.upperPositionLimit)
+        for joint in self.leg_joints:
+            place = self.model.joints[joint].idx_q
+            if self.model.joints[joint].nq == 1 and low[place] < high[place]:
+                bent[place] = np.clip((low[place] + high[place]) / 2, -BENT, BENT)
+        return bent
+
     def shifted(self, q: Array, posture: Mapping[str, float]) -> Array:
         """A copy of `q` with some joints set."""
         changed = q.copy()
@@ -138,10 +154,10 @@ class Body:
         task.set_target(target)
         return task
 
-    def root_task(self, attitude: Array) -> FrameTask:
-        """The root link's attitude (3, 3) in the world."""
+    def root_task(self, target: pin.SE3) -> FrameTask:
+        """The root link's attitude in the world; its place costs nothing."""
         task = FrameTask(self.robot.model.frames[1].name, position_cost=0.0, orientation_cost=1.0)
-        task.set_target(pin.SE3(attitude, np.zeros(3)))
+        task.set_target(target)
         return task
 
     def centre_task(self, target: Array, *, height: float = 0.0) -> ComTask:

@@ -13,7 +13,7 @@ from plantar.conventions import Array
 from plantar.motions.gait import Gait
 from plantar.motions.profile import smooth_step
 
-REST = 2.0  # s before and after
+REST = 2.0  # s of standing still before and after a motion
 SHIFT = 1.5  # s at least, to bring the weight over the first foot and back between the feet
 DOUBLE = 0.25  # of a step's period on both feet
 SHORTEST_DOUBLE = 0.2  # s: the weight cannot change feet more quickly

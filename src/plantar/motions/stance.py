@@ -42,8 +42,8 @@ def stand(
 ) -> Stance:
     """Both feet flat on the floor, each displaced by `steps` (x, y) [m], the chest upright over their middle.
 
-    Without a posture the knees bend a little from the neutral position. `apart` [m] between the soles' frames: as
-    in the posture where None. Raises MotionError when the soles overlap or a foot is out of reach.
+    Without a posture the knees bend a little from the neutral position, and the pelvis is level. `apart` [m] between
+    the soles' frames: as in the posture where None. Raises MotionError when the soles overlap or one is out of reach.
     """
     q = body.neutral(posture)
     q[3:7] = _facing_forward(body, q)
@@ -59,16 +59,18 @@ def stand(
     over = np.mean([target.act(_middle(body, name)) for name, target in targets.items()], axis=0)
     height = -middle[2] * (KNEE_BEND if posture is None else 1.0)
     q[:3] = centre + [-middle[0] if posture is not None else 0.0, 0.0, height]
-    chest = body.pose(q, CHEST)
     if posture is None:
         over_feet = body.centre_task(np.array([over[0], over[1], 0.0]))
-        upright = pin.SE3(np.eye(3), chest.translation)
-        keep = body.chest_task(upright)
-        keep.set_position_cost([0.0, 0.0, 1.0])
-        tasks = [*body.foot_tasks(targets), keep, over_feet]
+        upright = body.chest_task(pin.SE3.Identity(), position=False)
+        # Of the pelvis, not of the chest: what bends between them would lower the chest, and legs stay straight.
+        lowered = body.root_task(pin.SE3(pin.Quaternion(q[3:7]), q[:3]))
+        lowered.set_position_cost([0.0, 0.0, 10.0])
+        tasks = [*body.foot_tasks(targets), upright, lowered, over_feet]
+        beginning = body.bent(q)
     else:
-        tasks = [*body.foot_tasks(targets), body.chest_task(pin.SE3(chest.rotation, chest.translation))]
-    q = body.solve(q, tasks, q, steps=60)
+        tasks = [*body.foot_tasks(targets), body.chest_task(body.pose(q, CHEST))]
+        beginning = q
+    q = body.solve(beginning, tasks, q, steps=60)
     check_reached(body, q, targets, "standing")
     return Stance(q, targets, frozenset(targets))
 

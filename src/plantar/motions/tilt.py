@@ -10,13 +10,13 @@ from pink.tasks import Task
 
 from plantar.conventions import Array
 from plantar.motions.body import CHEST, Body
+from plantar.motions.footsteps import REST
 from plantar.motions.plan import Plan
 from plantar.motions.profile import bows, cycles
 from plantar.motions.stance import Stance
 from plantar.motions.track import track
 
 PERIOD = 10.0  # s
-REST = 2.0  # s before and after
 SQUAT_PERIOD = 4.0  # s
 SQUATS = 4  # of one motion
 

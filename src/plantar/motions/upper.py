@@ -59,12 +59,8 @@ def _gentler(body: Body, plan: Plan) -> float:
 
 def upper_joints(body: Body) -> list[str]:
     """Joints that carry neither foot, of one degree of freedom."""
-    carrying: set[int] = set()
-    for foot in body.robot.feet:
-        frame = body.model.frames[body.model.getFrameId(body.sole(foot))]
-        carrying |= set(body.model.supports[frame.parentJoint])
     return [
         body.model.names[joint]
         for joint in range(2, body.model.njoints)
-        if joint not in carrying and body.model.joints[joint].nq == 1
+        if joint not in body.leg_joints and body.model.joints[joint].nq == 1
     ]

@@ -72,7 +72,7 @@ def _follow(
         targets = {foot: pin.SE3(poses[place]) for foot, poses in soles.items()}
         facing = pin.exp3(np.array([0.0, 0.0, heading[place] - heading[0]]))
         upright = body.chest_task(pin.SE3(facing @ chest.rotation, chest.translation), position=False)
-        pelvis = body.root_task(facing @ level)
+        pelvis = body.root_task(pin.SE3(facing @ level, np.zeros(3)))
         tasks = [*body.foot_tasks(targets), upright, pelvis, body.centre_task(centre[place], height=10.0)]
         q = q if near is None else near[place]
         q = body.solve(q, tasks, rest, ITERATIONS if place or near is not None else SETTLED)

@@ -14,6 +14,7 @@ from plantar import _core
 from plantar.choices import number_in
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.errors import DataError
+from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimates import FIELDS, FootEstimate, foot_estimate
@@ -21,9 +22,8 @@ from plantar.online.estimator_model import Element, estimator_model
 from plantar.online.replay import Replay
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel, load_robot
+from plantar.signals.filters import LOWEST_CUTOFF
 
-DEFAULT_CUTOFF = 5.0  # Hz, as in `identify feet`
-LOWEST_CUTOFF = 0.1  # Hz
 LONGEST_DELAY = 0.1  # s
 
 

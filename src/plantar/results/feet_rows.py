@@ -12,6 +12,8 @@ from plantar.logs.motion_log import MotionLog
 from plantar.results.stored import row_of
 
 Verdict = Literal["usable", "weak", "unidentifiable"]
+USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
+WEAK_WIDTH = 0.5  # likewise: beyond it the value is not told from half or twice as much
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,9 @@ from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.faults.standing import UNEXPLAINED
 from plantar.robot_guess.feet import Sole, box
 from plantar.robot_guess.seat import Seat, pressure, sensor_pose
-from plantar.robot_guess.stance import Stance
+from plantar.robot_guess.stance import FEWEST, Stance
 
 LOADED = 0.3  # of the weight on a foot whose centre of pressure is looked at
-FEWEST = 20  # samples of a foot that is loaded, or of both
 RARE = 1.0  # % of the samples at either end that are left aside
 EDGE = 0.01  # m: no robot stands on the very edge of its soles
 OUTSIDE = 0.05  # share of the samples that may lie an EDGE or more outside an outline

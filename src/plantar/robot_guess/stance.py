@@ -17,7 +17,7 @@ from plantar.signals.filters import low_pass
 from plantar.signals.segments import spread_out
 
 SAMPLES = 400  # of one log: gravity, balance and outline change slowly
-FEWEST = 20  # samples of a robot that stands: fewer say nothing of how
+FEWEST = 20  # samples of a robot that stands, or of a foot that is loaded: fewer say nothing of how
 CARRIES = 0.5  # of the weight: force on both feet together of a robot that stands
 SHARES = 0.15  # of the weight on a foot that takes part
 CALM = 1.0  # Hz: what an accelerometer reads below this is mostly gravity

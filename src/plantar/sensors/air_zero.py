@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.conventions import FORCE, TORQUE, Array, Mask
+from plantar.estimation.errors_in_variables import NORMAL
 from plantar.results.walk_rows import SwingZero
 from plantar.signals.segments import runs
 
@@ -97,7 +98,7 @@ def air_zero(
         drift = np.where(np.abs(slope) > CLEAR_DRIFT * uncertainty, slope, 0.0)
     left = seen - (when - about)[:, None] * drift
     usual = np.median(left, axis=0)
-    scatter = 1.4826 * np.median(np.abs(left - usual), axis=0)
+    scatter = NORMAL * np.median(np.abs(left - usual), axis=0)
     return AirZero(usual, drift, scatter, about, when, seen)
 
 

@@ -21,16 +21,15 @@ from plantar.estimation.slow_drift import drift_basis
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import TOLD, enough_of, lean_of, stance_leans
+from plantar.sensors.accelerometer_delay import EDGE
+from plantar.sensors.tilt_error import SURE, TOLD, enough_of, lean_of, stance_leans
 from plantar.signals.filters import low_pass
 from plantar.signals.orientation import unit_quaternions
 
 ATTITUDE_SCALE = "attitude_scale"
 # An accelerometer whose axes differ by 2 % shows as much, and so does a URDF with wrong lengths.
 SCALE_OFF = 0.03
-SURE = 6.0  # deviations
 SINGULAR = 1e4  # condition beyond which one pace of sway does not tell scale and height apart
-EDGE = 1.0  # s, of each stance: the filter's
 WITHOUT_LEAN = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the tilt as the soles have it
 # Of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander.
 STAYS = 0.5

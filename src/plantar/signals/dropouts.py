@@ -8,7 +8,7 @@ from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog, device_of
 from plantar.signals.segments import runs
 
-FAR_STEPS = 10.0  # usual steps from sample to sample, by which the angle must jump: no joint moves so
+FAR_STEPS = 10.0  # usual steps from sample to sample: what jumps by more does not belong to its neighbours
 FINEST = 1e-7  # rad: smaller steps are rounding, as of a coarse encoder that stands still
 LEAST = 0.01  # rad: several steps of the coarsest encoder, which reads zero wherever its joint is near it
 FEWEST = 2  # stretches: a joint that was switched on has one

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from plantar import _core
 from plantar.conventions import Array
 
+LOWEST_CUTOFF = 0.1  # Hz: below it nothing of a motion is left
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
 SHORTEST_FITTED_RUN = 8  # samples of a stance, or between gaps of a thinned log: one cycle of the cutoff
 PADDED = 3.0  # of the cutoff's period, by which a run is continued: its filter has settled by then
 MOST_PADDED = 10_000  # samples
+KEPT = 2  # lengths whose cosines are: groups of one log's signals ask one after the other
 
 
 def low_pass(
@@ -58,3 +62,16 @@ def differentiate(values: Array, period: float) -> Array:
         near = np.gradient(values, period, axis=0)
         slope = np.where(np.isfinite(slope), slope, near)
     return slope
+
+
+def without_slow_cosines(rows: Array, period: float, slowest: float) -> Array:
+    """Rows (n, k), `period` [s] apart, without their cosines from a constant up to a frequency `slowest` [Hz]."""
+    cosines = _cosines(len(rows), round(2 * slowest * len(rows) * period) + 1)
+    return np.asarray(rows - cosines @ (cosines.T @ rows))
+
+
+@lru_cache(maxsize=KEPT)
+def _cosines(rows: int, count: int) -> Array:
+    """The slowest cosines (rows, count), orthonormal."""
+    cosines = np.cos(np.pi * np.arange(count) * (np.arange(rows)[:, None] + 0.5) / rows)
+    return np.asarray(cosines / np.linalg.norm(cosines, axis=0))

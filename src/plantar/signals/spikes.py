@@ -12,9 +12,9 @@ from plantar.conventions import Array, Mask
 from plantar.errors import clock
 from plantar.logs.motion_log import MotionLog, device_of
 from plantar.notes import Note, Severity
+from plantar.signals.dropouts import FAR_STEPS
 from plantar.signals.footfalls import footfalls
 
-FAR_STEPS = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
 NEIGHBOURS = 2  # on either side: a segment of more than two samples is no spike
 LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
 GROUP_GAP = 0.15  # s around a spike, or around a foot that lands or leaves

@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 
+from plantar.conventions import MONTH
 from plantar.errors import PlantarError
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
@@ -28,7 +29,6 @@ from plantar.twin.recording import record
 from plantar.twin.robots import hrp2
 
 FIRST_DAY: Final = datetime(2026, 1, 1, 9, tzinfo=UTC)
-MONTH: Final = 365.25 / 12  # days
 BETWEEN_ROBOTS: Final = 0.03  # shares by which stiffness differs
 BETWEEN_DAYS: Final = 0.005
 STEP: Final = 0.08  # of a new sole

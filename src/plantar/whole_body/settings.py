@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any, Final
+from typing import Any
 
 from plantar.choices import number_in
 from plantar.errors import SettingsError
-
-LOWEST_CUTOFF: Final = 0.1  # Hz: below it nothing of a motion is left
+from plantar.signals.filters import LOWEST_CUTOFF
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording, Stances
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -50,7 +50,7 @@ def said(
     covariance = fit.covariance.copy()
     covariance[1, 1] = std**2
     wide = replace(fit, covariance=covariance)
-    return [note.text for note in late_recordings(wide, tangent_blocks(recordings, fit), False)]
+    return [note.text for note in late_recordings(Tangent.of(fit, recordings, False), wide)]
 
 
 @pytest.mark.parametrize(("late", "told"), [(0.012, "12 ms later"), (-0.012, "12 ms earlier")])
@@ -150,7 +150,7 @@ def test_a_recording_that_is_late_about_one_axis_is_trusted_about_neither(
 ) -> None:
     """Roll's damping may hardly show a clock that pitch's shows."""
 
-    def late_in_pitch(wide: AxisFit, *_: object) -> list[Note]:
+    def late_in_pitch(_: Tangent, wide: AxisFit) -> list[Note]:
         told = wide.foot == "left" and wide.axis == "pitch"
         return [Note(RECORDING_LATE, "warning", "sway_1: late")] if told else []
 

@@ -16,7 +16,7 @@ from plantar.feet.assess.odd_recordings import CODE, odd_recordings, odd_walks
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.results.walk_rows import WalkStiffness
 from plantar.robot.model import RobotModel
@@ -41,7 +41,7 @@ def swaying(*feet: tuple[Rubber, float]) -> list[Recording]:
 def said(recordings: list[Recording], model: str = "kelvin_voigt") -> list[str]:
     fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model=model))
     assert fit is not None
-    return [note.text for note in odd_recordings(fit, tangent_blocks(recordings, fit), False)]
+    return [note.text for note in odd_recordings(Tangent.of(fit, recordings, False), fit)]
 
 
 def test_the_odd_one_of_three_is_named_with_how_far_it_is() -> None:
@@ -140,10 +140,7 @@ def test_a_walk_is_told_from_others_by_the_scatter_of_its_stances() -> None:
             for k, (stiffness, half) in enumerate(rows)
         ]
         unseen = WalkStiffness("unseen", "validate", FOOT, "pitch", 9, 200.0, (190.0, 210.0))
-        return [
-            note.text
-            for note in odd_walks(fit, [*found, unseen], recordings, tangent_blocks(recordings, fit))
-        ]
+        return [note.text for note in odd_walks(Tangent.of(fit, recordings, False), fit, [*found, unseen])]
 
     (text,) = walks((420.0, 4.0), (378.0, 4.0), (420.0, 4.0))
     assert text.startswith(f"walk_1: {FOOT} pitch: stiffness is -10 ± ")

@@ -10,7 +10,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.feet.assess.play import CODE, play_notes
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.recording import Recording
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 
@@ -33,7 +33,7 @@ def swaying(rubber: Rubber, play: float = 0.0) -> list[Recording]:
 def said(recordings: list[Recording]) -> list[Note]:
     fit = fit_axis(recordings, FOOT, "pitch", FeetSettings())
     assert fit is not None
-    return play_notes(recordings, fit, tangent_blocks(recordings, fit), False)
+    return play_notes(Tangent.of(fit, recordings, False), fit)
 
 
 @pytest.mark.parametrize("play", [0.004, 0.01])
@@ -69,4 +69,4 @@ def test_play_is_told_where_half_as_much_again_is_left_without_it(play: float, t
         made.append(made_recording(f"sway_{seed}", read, torque, rate=rate))
     fit = fit_axis(made, FOOT, "pitch", FeetSettings(model="kelvin_voigt"))
     assert fit is not None
-    assert bool(play_notes(made, fit, tangent_blocks(made, fit), False)) == told
+    assert bool(play_notes(Tangent.of(fit, made, False), fit)) == told

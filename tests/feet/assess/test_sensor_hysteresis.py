@@ -12,7 +12,7 @@ from plantar.feet.assess.sensor_hysteresis import HYSTERESIS, hysteresis_notes
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.recording import Recording
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 
@@ -40,7 +40,7 @@ def said(rubber: Rubber, width: float, unsure: float = 0.0) -> list[Note]:
     fit = fit_axis(made, FOOT, "pitch", FeetSettings())
     assert fit is not None
     wide = inflated(fit, [Cause("delay", np.array([0.0, unsure]), 1.0)])
-    return hysteresis_notes(made, wide, tangent_blocks(made, fit), False)
+    return hysteresis_notes(Tangent.of(fit, made, False), wide)
 
 
 @pytest.mark.parametrize("width", [0.1, 0.3])

@@ -10,7 +10,7 @@ import pytest
 from plantar.feet.assess.contradiction import missed_motions
 from plantar.feet.assess.diagnosis import REMEDY, share_of
 from plantar.feet.assess.verdicts import LATE, SIGNS, Evidence, judge, judge_term
-from plantar.feet.place.far_arms import far_arms
+from plantar.feet.place.place_notes import far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 from plantar.results.feet_rows import ValidationRow

@@ -21,7 +21,7 @@ from plantar.feet.interval_width.between_recordings import (
     recordings_apart,
 )
 from plantar.feet.prepare import prepare_all
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.robot.model import RobotModel
 
 LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
@@ -36,9 +36,7 @@ def share(robot: RobotModel, shares: list[float], prior: float = 0.0) -> float:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(
-        fit, tangent_blocks(ready.fitted, fit), ready.fitted, Apart(prior, 2), False
-    )
+    (cause,) = between_recordings(Tangent.of(fit, ready.fitted, False), Apart(prior, 2))
     return float(cause.share[0] / fit.values[0])
 
 
@@ -100,7 +98,7 @@ def test_a_prior_that_few_recordings_hold_up_is_no_more_sure_than_these() -> Non
     recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.05, 2), False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), Apart(0.05, 2))
     assert cause.freedom == 2.0
     assert cause.share[0] == pytest.approx(0.05 * 400.0 / np.sqrt(3), rel=0.1)
 
@@ -116,7 +114,7 @@ def test_many_that_differ_say_it_by_what_each_moves() -> None:
         recordings.append(made_recording(f"sway_{seed}", angle, own * angle + slow))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 5), False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), Apart(0.0, 5))
     assert cause.freedom == pytest.approx(5.0)
     without = [fit_axis([*recordings[:k], *recordings[k + 1 :]], FOOT, "pitch", LINEAR) for k in range(6)]
     values = np.array([one.values for one in without if one is not None])
@@ -135,10 +133,8 @@ def test_a_number_that_hangs_on_one_recording_takes_what_recordings_differ_by() 
     ]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    blocks = tangent_blocks(recordings, fit)
-    alike, apart = (
-        between_recordings(fit, blocks, recordings, Apart(share, 5), False)[0] for share in (0.0, 0.03)
-    )
+    tangent = Tangent.of(fit, recordings, False)
+    alike, apart = (between_recordings(tangent, Apart(share, 5))[0] for share in (0.0, 0.03))
     assert alike.share[0] < 0.005 * 400.0
     assert apart.share[0] == pytest.approx(0.03 * 400.0, rel=0.02)
     assert apart.freedom == 5.0
@@ -149,7 +145,7 @@ def test_few_recordings_differ_by_what_other_axes_show() -> None:
     recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.02, 7), False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), Apart(0.02, 7))
     assert cause.freedom == 7.0
     assert cause.share[0] == pytest.approx(0.02 * 400.0 / np.sqrt(3), rel=0.1)
 
@@ -164,10 +160,10 @@ def test_recordings_that_hardly_move_say_nothing_of_how_recordings_differ() -> N
         recordings.append(made_recording(f"sway_{seed}", angle, (800.0 if seed else 400.0) * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.01, 3), False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), Apart(0.01, 3))
     assert cause.share[0] == pytest.approx(0.01 * fit.values[0], rel=0.1)
     assert cause.freedom == 3.0
-    assert axis_differences(fit, recordings, False) is None
+    assert axis_differences(Tangent.of(fit, recordings, False)) is None
 
 
 @pytest.mark.parametrize(("count", "widened"), [(4, True), (5, False)])
@@ -181,7 +177,7 @@ def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
         recordings.append(made_recording(f"sway_{seed}", angle, stiffness * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 1), False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), Apart(0.0, 1))
     assert bool(cause.share[0] > 0.02 * fit.values[0]) is widened
 
 
@@ -200,13 +196,13 @@ def test_an_angle_that_wanders_in_a_recording_that_hardly_moves_is_no_other_stif
         recordings.append(made_recording(f"sway_{seed}", read, 400.0 * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    found = axis_differences(fit, recordings, False)
+    found = axis_differences(Tangent.of(fit, recordings, False))
     assert found is not None
     known = np.sqrt(np.diag(found.differences.covariance))
     assert found.differences.shares[1] < (-0.8 if unsure else -0.3)
     assert known[1] > 0.4 if unsure else known[1] < 0.1
     assert known[0] < 0.1
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 1), False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), Apart(0.0, 1))
     assert (cause.share[0] < 0.01 * fit.values[0]) == unsure
 
 
@@ -218,7 +214,7 @@ def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
         recordings = [made_recording(f"sway_{k}", angle[k], 400.0 * angle[k] + noise[k]) for k in range(5)]
         fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
         assert fit is not None
-        assert (axis_differences(fit, recordings, False) is not None) == compared
+        assert (axis_differences(Tangent.of(fit, recordings, False)) is not None) == compared
 
 
 @pytest.mark.parametrize(
@@ -243,7 +239,7 @@ def test_few_that_know_most_are_as_far_off_as_all_axes_show(
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
     apart = Apart(share, 4, (0.01, 0.06) if share else None)
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, apart, False)
+    (cause,) = between_recordings(Tangent.of(fit, recordings, False), apart)
     assert cause.share[0] / fit.values[0] == pytest.approx(told, rel=0.1, abs=0.003)
 
 
@@ -259,9 +255,9 @@ def test_a_motion_for_each_axis_leaves_each_number_to_its_own(wandering: float, 
         recordings.append(made_recording(f"sway_{seed}", read, 400.0 * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    assert (axis_differences(fit, recordings, False) is not None) is compared
-    blocks = tangent_blocks(recordings, fit)
-    (cause,) = between_recordings(fit, blocks, recordings, Apart(0.0, 1), False)
+    assert (axis_differences(Tangent.of(fit, recordings, False)) is not None) is compared
+    tangent = Tangent.of(fit, recordings, False)
+    (cause,) = between_recordings(tangent, Apart(0.0, 1))
     assert cause.share[0] < 0.01 * fit.values[0]
 
 
@@ -276,7 +272,7 @@ def test_an_axis_about_which_a_foot_hardly_turns_says_nothing_of_recordings(size
         recordings.append(made_recording(f"sway_{seed}", read, 4000.0 * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    assert (axis_differences(fit, recordings, False) is not None) == told
+    assert (axis_differences(Tangent.of(fit, recordings, False)) is not None) == told
 
 
 @pytest.mark.parametrize("shared", [False, True])
@@ -289,7 +285,6 @@ def test_a_drift_is_beside_offsets_of_each_recording_alone(
         told.append(drift)
         return []
 
-    monkeypatch.setattr("plantar.feet.interval_width.between_recordings.tangent_blocks", blocks)
-    monkeypatch.setattr("plantar.feet.interval_width.between_recordings._comparable", lambda *given: False)
-    assert axis_differences(None, [], shared) is None  # type: ignore[arg-type]
+    monkeypatch.setattr("plantar.feet.regression.tangent.tangent_blocks", blocks)
+    assert Tangent.of(None, [], shared).shared is shared  # type: ignore[arg-type]
     assert told == [not shared]

@@ -16,7 +16,7 @@ from plantar.feet.interval_width.between_walks import between_walks
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import MODELS
 
 LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
@@ -38,7 +38,7 @@ def cause_of(shares: list[float], scatter: float, every: Apart = ALIKE) -> tuple
     walks = [walk(seed, own, scatter) for seed, own in enumerate(shares)]
     fit = fit_axis(walks, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_walks(fit, tangent_blocks(walks, fit), every)
+    (cause,) = between_walks(Tangent.of(fit, walks, False), every)
     return fit, cause
 
 
@@ -79,23 +79,25 @@ def test_from_five_walks_on_the_fit_holds_what_differs() -> None:
     walks = [walk(seed, own, 0.01) for seed, own in enumerate(shares)]
     fit = fit_axis(walks, FOOT, "pitch", LINEAR)
     assert fit is not None
-    blocks = tangent_blocks(walks, fit)
+    tangent = Tangent.of(fit, walks, False)
     memory = replace(
         fit, model=MODELS["elastoplastic"], values=np.append(fit.values, 5.0), shape=np.array([0.01])
     )
-    (cause,) = between_walks(memory, blocks, ALIKE)
+    (cause,) = between_walks(replace(tangent, fit=memory), ALIKE)
     assert not cause.share[:2].any()
     np.testing.assert_allclose(
         cause.share[2:] / memory.numbers[2:], np.std(shares, ddof=1) / np.sqrt(5), rtol=0.4
     )
     assert cause.freedom == 4.0
-    assert axis_differences(fit, walks, False) is None
+    assert axis_differences(Tangent.of(fit, walks, False)) is None
 
 
 def test_few_walks_leave_a_memory_as_unsure_as_the_stiffness() -> None:
     walks = [walk(seed, own, 0.001) for seed, own in enumerate([-0.04, 0.0, 0.04])]
     fit = fit_axis(walks, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_walks(replace(fit, shape=np.array([0.01])), tangent_blocks(walks, fit), ALIKE)
+    (cause,) = between_walks(
+        replace(Tangent.of(fit, walks, False), fit=replace(fit, shape=np.array([0.01]))), ALIKE
+    )
     assert cause.share[2] / 0.01 == pytest.approx(cause.share[0] / fit.values[0])
-    assert axis_differences(fit, walks, False) is not None
+    assert axis_differences(Tangent.of(fit, walks, False)) is not None

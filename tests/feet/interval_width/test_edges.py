@@ -23,10 +23,10 @@ from plantar.feet.interval_width.force_gain import (
     force_gain_notes,
     torque_gain_causes,
 )
-from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.systematic import robot_causes
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import KelvinVoigt
 from plantar.robot.model import RobotModel
 
@@ -108,12 +108,12 @@ def sways(*stiffness: float) -> list[Recording]:
 def test_a_gain_and_a_turned_sensor_add_up(turned: float) -> None:
     """A sensor turned by ψ reads cos ψ of the torque."""
     fit = replace(FIT, turned=turned, offsets={"sway_0": 0.0})
-    blocks = tangent_blocks(sways(400.0), fit)
-    causes = robot_causes(fit, blocks, sways(400.0), 0.003, Apart(0.0, 1), shared=False)
+    tangent = Tangent.of(fit, sways(400.0), False)
+    causes = robot_causes(tangent, 0.003, Apart(0.0, 1))
     assert [cause.name for cause in causes] == ["sensor gain"]
     assert causes[0].std == pytest.approx(np.hypot(0.003, 1 - np.cos(turned)))
     assert list(causes[0].share) == pytest.approx([400 * causes[0].std, 20 * causes[0].std])
-    assert bool(robot_causes(fit, blocks, sways(400.0), 0.0, Apart(0.0, 1), shared=False)) == (turned > 0)
+    assert bool(robot_causes(tangent, 0.0, Apart(0.0, 1))) == (turned > 0)
 
 
 def test_causes_add_to_the_covariance_and_share_their_freedom() -> None:

@@ -14,8 +14,8 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.encoder_delay import NAME, encoder_delay_causes
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.interval_width.sensor_causes import LATE_ENCODERS, encoder_delay_causes
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
@@ -44,7 +44,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> tuple[FeetResult, FeetR
 
 
 def shares(result: FeetResult) -> list[float]:
-    return [row.variance_shares.get(NAME, 0.0) for row in result.diagnosis if row.name == "damping"]
+    return [row.variance_shares.get(LATE_ENCODERS, 0.0) for row in result.diagnosis if row.name == "damping"]
 
 
 def test_encoders_on_time_widen_nothing(results: tuple[FeetResult, FeetResult]) -> None:
@@ -62,7 +62,7 @@ def test_early_ones_widen_the_damping_until_it_holds_the_truth(
         low, high = row.interval95
         assert low < law.damping < high
         share = next(
-            one.variance_shares.get(NAME, 0.0)
+            one.variance_shares.get(LATE_ENCODERS, 0.0)
             for one in results[1].diagnosis
             if (one.foot, one.axis, one.name) == (foot, axis, "damping")
         )
@@ -84,7 +84,7 @@ def test_of_a_walk_encoders_late_by_what_nobody_knows_are_damping() -> None:
     walk.raw[FOOT].torque[:, 1] = 0.0  # else a turned sensor would explain all
     fit = fit_axis([walk], FOOT, "pitch", replace(PUNCTUAL, model="kelvin_voigt"))
     assert fit is not None
-    blocks = tangent_blocks([walk], fit)
-    (cause,) = encoder_delay_causes(fit, blocks, [walk], 0.0005, False)
+    tangent = Tangent.of(fit, [walk], False)
+    (cause,) = encoder_delay_causes(tangent, 0.0005)
     assert cause.share[1] == pytest.approx(400.0 * 0.0005, rel=0.05)
-    assert encoder_delay_causes(fit, blocks, [walk], 0.0, False) == [], "a delay that is known"
+    assert encoder_delay_causes(tangent, 0.0) == [], "a delay that is known"

@@ -9,10 +9,10 @@ from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import UNIFORM
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.interval_width.fading import NAME, fading_causes
+from plantar.feet.interval_width.sensor_causes import LOW_PASS, fading_causes
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.sensors.bandwidth import Fading
 
 STIFFNESS, DAMPING = 400.0, 6.0
@@ -41,15 +41,15 @@ def test_a_unit_of_it_moves_the_numbers_as_a_low_pass_does() -> None:
     """Fitted through the filter and without it, on two sines of different frequencies: the difference is the effect."""
     recording = behind(SLOPE)
     fit, exact = fitted(recording), fitted(behind(0.0))
-    (cause,) = fading_causes(fit, tangent_blocks([recording], fit), [recording], Fading(SLOPE, 1e-4), False)
+    (cause,) = fading_causes(Tangent.of(fit, [recording], False), Fading(SLOPE, 1e-4))
     moved = fit.values - exact.values
     assert moved[0] < -0.001 * STIFFNESS
     assert moved[1] < -0.002 * DAMPING
     np.testing.assert_allclose(-SLOPE * cause.effect, moved, rtol=0.02)
-    assert (cause.name, cause.std) == (NAME, pytest.approx(UNIFORM * -SLOPE))
+    assert (cause.name, cause.std) == (LOW_PASS, pytest.approx(UNIFORM * -SLOPE))
 
 
 def test_without_a_slow_filter_nothing_is_widened() -> None:
     recording = behind(0.0)
     fit = fitted(recording)
-    assert fading_causes(fit, tangent_blocks([recording], fit), [recording], None, False) == []
+    assert fading_causes(Tangent.of(fit, [recording], False), None) == []

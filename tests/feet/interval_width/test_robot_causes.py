@@ -12,9 +12,9 @@ from feet_trials import LINEAR, noisy
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width.between_recordings import Apart
-from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.systematic import robot_causes
 from plantar.feet.prepare import prepare_all
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT, Uncertainty
@@ -73,10 +73,9 @@ def test_a_turned_sensor_reads_less_by_its_cosine(robot: RobotModel) -> None:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    blocks = tangent_blocks(ready.fitted, fit)
-    assert [cause.name for cause in robot_causes(fit, blocks, ready.fitted, 0.0, Apart(0.0, 1), False)] == [
-        "between recordings"
-    ]
-    cause, _ = robot_causes(replace(fit, turned=0.2), blocks, ready.fitted, 0.0, Apart(0.0, 1), False)
+    tangent = Tangent.of(fit, ready.fitted, False)
+    assert [cause.name for cause in robot_causes(tangent, 0.0, Apart(0.0, 1))] == ["between recordings"]
+    turned = replace(tangent, fit=replace(fit, turned=0.2))
+    cause, _ = robot_causes(turned, 0.0, Apart(0.0, 1))
     assert cause.std == pytest.approx(1 - np.cos(0.2))
     np.testing.assert_array_equal(cause.effect, fit.values)

@@ -18,6 +18,7 @@ from plantar.feet.interval_width.slip_angle import (
 )
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 
 UNRESOLVED = 0.005
@@ -59,7 +60,7 @@ def test_what_is_claimed_too_well_is_known_to_half_a_per_cent(
     fit: AxisFit, recordings: list[Recording]
 ) -> None:
     assert fit.std[PLACE] < UNRESOLVED * fit.shape[0]
-    wide = inflated(fit, slip_angle_causes(fit, recordings, shared=False))
+    wide = inflated(fit, slip_angle_causes(Tangent.of(fit, recordings, False)))
     assert wide.std[PLACE] == pytest.approx(0.005 * fit.shape[0], rel=1e-3)
 
 
@@ -67,7 +68,7 @@ def test_values_follow_as_a_slip_angle_moved_by_a_per_cent_moves_them(
     fit: AxisFit, recordings: list[Recording]
 ) -> None:
     """At K·x + T·min(x/a, 1) a larger angle a takes from the spring what the element then has, the torque staying."""
-    (cause,) = slip_angle_causes(claimed(fit, 1e-6), recordings, shared=False)
+    (cause,) = slip_angle_causes(Tangent.of(claimed(fit, 1e-6), recordings, False))
     assert cause.std == pytest.approx(UNRESOLVED, rel=1e-6)
     assert cause.effect[PLACE] == pytest.approx(fit.shape[0])
     element = fit.values[2] / fit.shape[0]
@@ -79,14 +80,14 @@ def test_values_follow_as_a_slip_angle_moved_by_a_per_cent_moves_them(
 def test_what_is_claimed_less_well_is_believed(
     fit: AxisFit, recordings: list[Recording], share: float, said: int
 ) -> None:
-    causes = slip_angle_causes(claimed(fit, share), recordings, shared=False)
+    causes = slip_angle_causes(Tangent.of(claimed(fit, share), recordings, False))
     assert len(causes) == said
     if causes:  # hardly anything is missing
         assert inflated(claimed(fit, share), causes).std[PLACE] == pytest.approx(UNRESOLVED * fit.shape[0])
 
 
 def test_a_spring_without_memory_has_none(recordings: list[Recording]) -> None:
-    assert slip_angle_causes(fitted(recordings, "kelvin_voigt"), recordings, shared=False) == []
+    assert slip_angle_causes(Tangent.of(fitted(recordings, "kelvin_voigt"), recordings, False)) == []
 
 
 def test_the_cause_has_its_remedy() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
-from plantar.estimation import Block, fit_blocks, influences_of
+from plantar.estimation import Block, fit_blocks
 from plantar.estimation.blocks import StanceRows
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
@@ -23,8 +24,8 @@ from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.interval_width.systematic import (
     _angle_errors,
-    _by_delay,
     _ends_of_stances,
+    _late_torques,
     _shared_slope,
     _softening,
     _suspected_hardening,
@@ -32,7 +33,7 @@ from plantar.feet.interval_width.systematic import (
 )
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import blocks_of, tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.logs.motion_log import MotionLog
 from plantar.models import MODELS
 from plantar.notes import Note
@@ -81,8 +82,8 @@ def test_a_cube_is_looked_for_about_the_middle_of_the_motions() -> None:
         torque = 400.0 * angle + 2e5 * angle**3
         fit = fit_axis([made_recording("sway", angle + middle, torque)], FOOT, "pitch", LINEAR)
         assert fit is not None
-        blocks = blocks_of([made_recording("sway", angle + middle, torque)], FOOT, "pitch", fit=fit)
-        found += [cause.effect[0] * cause.std for cause in _suspected_hardening(fit, blocks, False)]
+        tangent = Tangent.of(fit, [made_recording("sway", angle + middle, torque)], False)
+        found += [cause.effect[0] * cause.std for cause in _suspected_hardening(tangent)]
     assert len(found) == 2
     assert abs(found[0]) > 5.0
     assert found[1] == pytest.approx(found[0], rel=1e-6)
@@ -126,12 +127,14 @@ def test_a_delay_in_doubt_is_allowed_for_as_far_as_it_may_be_off() -> None:
     time = period * np.arange(1000)
     torque, used = np.sin(2 * np.pi * time), np.arange(1000) % 1000 > 100
     sure = SensorDelay(0.0, reach / NORMAL95, np.inf, False, Note("delay", "info", ""))
-    ((slope,),) = _by_delay([(torque, period, used)], sure)
+    read: Any = SimpleNamespace(period=period)
+    (slope,) = (late(read)[used] for late in _late_torques(sure, lambda _: torque))
     np.testing.assert_allclose(slope, 2 * np.pi * np.cos(2 * np.pi * time)[used], atol=0.1)
-    later, earlier = _by_delay([(torque, period, used)], replace(sure, doubtful=True))
+    doubtful = _late_torques(replace(sure, doubtful=True), lambda _: torque)
+    later, earlier = (late(read)[used] for late in doubtful)
     inner = slice(100, -100)
     wave = torque[used][inner]
-    for (change,), moved in ((later, reach), (earlier, -reach)):
+    for change, moved in ((later, reach), (earlier, -reach)):
         expected = (np.sin(2 * np.pi * (time + moved)) - torque)[used][inner] / reach
         np.testing.assert_allclose(change[inner], expected, atol=1e-6)
         assert reach * (change[inner] @ wave) / (wave @ wave) == pytest.approx(
@@ -153,8 +156,8 @@ def test_a_cause_adds_its_variance_and_brings_its_few_degrees_of_freedom() -> No
 def causes_of(
     fit: AxisFit, recordings: list[Recording], delay: SensorDelay, vertical: VerticalStiffness
 ) -> dict[str, Cause]:
-    blocks = tangent_blocks(recordings, fit)
-    return {cause.name: cause for cause in systematic_causes(fit, blocks, recordings, delay, vertical, False)}
+    tangent = Tangent.of(fit, recordings, False)
+    return {cause.name: cause for cause in systematic_causes(tangent, delay, vertical)}
 
 
 def test_a_cause_is_as_sure_as_what_it_comes_from() -> None:
@@ -229,7 +232,7 @@ def test_the_yaw_torques_zero_is_as_large_as_the_others_or_as_motions_show_it(
     exact = SensorDelay(0.0, 0.0, np.inf, False, Note("delay", "info", ""))
     flat = VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 0.0}, np.inf)
     yaw = causes_of(fit, recordings, exact, flat)["yaw torque zero"]
-    influences = influences_of(tangent_blocks(recordings, fit))
+    influences = Tangent.of(fit, recordings, False).influences
     sines = [np.sin(other)[one.rows(FOOT)] for other, one in zip(pitch, recordings, strict=True)]
     moved = [(own @ sine)[0] for own, sine in zip(influences, sines, strict=True)]
     assert yaw.share[0] == pytest.approx(min(zeros, np.sqrt(12.5)) * np.hypot(*moved), rel=0.01)
@@ -293,7 +296,8 @@ def test_an_attitude_that_wanders_draws_the_spring_to_zero(
     stances = StanceRows(number, np.ones(12000)) if steps else None
     blocks = [Block("log", seen, torque, 0.01, stances=stances)]
     stiffness = fit_blocks(blocks).values[0]
-    cause = _angle_errors(SimpleNamespace(equivalent=(stiffness, 0.0)), blocks, False)  # type: ignore[arg-type]
+    fit: Any = SimpleNamespace(equivalent=(stiffness, 0.0))
+    cause = _angle_errors(Tangent(fit, blocks, [], False))
     assert 400.0 - stiffness == pytest.approx(share * 400.0, rel=0.3, abs=0.02 * 400.0)
     assert cause.effect[0] == pytest.approx(share * 400.0, rel=0.3, abs=0.01 * 400.0)
     assert cause.std == pytest.approx(1 / np.sqrt(3)), "anything from none to all of it"
@@ -335,7 +339,7 @@ def test_a_cube_is_suspected_from_two_deviations_on(
         singular=False,
     )
     monkeypatch.setattr(systematic, "fit_blocks", lambda *_, **__: found)
-    causes = _suspected_hardening(fit, blocks_of(recordings, FOOT, "pitch", fit=fit), False)
+    causes = _suspected_hardening(Tangent.of(fit, recordings, False))
     assert len(causes) == suspected
     for cause in causes:
         assert np.abs(cause.share) == pytest.approx([8.0, damping], rel=1e-2), "as far as it moves the fit"

@@ -15,7 +15,8 @@ from plantar.feet.interval_width.between_recordings import axis_differences, rec
 from plantar.feet.interval_width.yaw_zero import fit_beside, yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, tangent_blocks
+from plantar.feet.regression.regression_data import all_beside
+from plantar.feet.regression.tangent import Tangent
 
 STIFFNESS = 400.0
 
@@ -36,7 +37,7 @@ def rolled(zero: float, apart: float = 0.0, offset: float = 0.7) -> tuple[list[R
 
 
 def differences(recordings: list[Recording], fit: AxisFit) -> float:
-    found = axis_differences(fit, recordings, False)
+    found = axis_differences(Tangent.of(fit, recordings, False))
     assert found is not None
     return recordings_apart([found], 0.0, exact=False).share
 
@@ -59,11 +60,11 @@ def test_rubber_that_differs_is_still_seen(zero: float) -> None:
 def test_zeros_are_as_free_as_is_usual() -> None:
     """Between a fit that has none, and one that knows nothing of them: the mean and covariance of a Gaussian prior."""
     recordings, fit = rolled(1.0)
-    blocks = tangent_blocks(recordings, fit)
-    zeros = yaw_zeros(fit, blocks, recordings)
+    tangent = Tangent.of(fit, recordings, False)
+    blocks, zeros = tangent.blocks, yaw_zeros(tangent)
     assert zeros is not None
     assert zeros.usual == pytest.approx(0.7)
-    assert yaw_zeros(replace(fit, axis="pitch"), blocks, recordings) is None
+    assert yaw_zeros(replace(tangent, fit=replace(fit, axis="pitch"))) is None
     without, free = (fit_beside(each, blocks) for each in (None, zeros._replace(usual=1e6)))
     np.testing.assert_array_equal(without[0], fit_blocks(blocks).values)
     assert free[0][0] == pytest.approx(STIFFNESS, rel=1e-3)
@@ -83,14 +84,14 @@ def test_zeros_are_as_free_as_is_usual() -> None:
 def test_zeros_that_no_motion_shows_are_as_large_as_is_usual_and_move_no_value() -> None:
     """A pitch that stays as it is: its zero cannot be told from the offset."""
     recordings, fit = rolled(1.0)
-    blocks = tangent_blocks(recordings, fit)
-    zeros = yaw_zeros(fit, blocks, recordings)
+    tangent = Tangent.of(fit, recordings, False)
+    blocks, zeros = tangent.blocks, yaw_zeros(tangent)
     assert zeros is not None
     level = zeros._replace(columns=[0.1 * (each != 0) for each in zeros.columns])
     plain = fit_blocks(blocks)
     for found, right in zip(fit_beside(level, blocks), (plain.values, plain.covariance), strict=True):
         np.testing.assert_allclose(found, right[:2] if right.ndim == 1 else right[:2, :2], rtol=1e-12)
-    influences = [np.ones((2, len(block.response))) for block in blocks]
-    cause = yaw_torque_zero(level, blocks, influences, False)
+    tangent.influences[:] = [np.ones((2, len(block.response))) for block in blocks]
+    cause = yaw_torque_zero(level, tangent)
     effect = [0.7 * np.sum(each, axis=0) for each in level.columns]
     np.testing.assert_allclose(cause.effect, np.linalg.norm(np.sum(effect, axis=0)), rtol=1e-9)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.feet.place.far_arms import FAR_ARM, far_arms
+from plantar.feet.place.place_notes import FAR_ARM, far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 

@@ -10,7 +10,7 @@ import pytest
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
 from plantar.estimation import Block
-from plantar.feet.place.imu_columns import imu_columns, that_show
+from plantar.feet.place.imu_mount import imu_columns, that_show
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.model_columns import model_columns
 from plantar.models import MODELS, KelvinVoigt

@@ -9,9 +9,9 @@ import pytest
 
 from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.estimation import fit_blocks
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.place.imu_mount import turn_told, with_turns
+from plantar.feet.regression.tangent import Tangent
 
 STIFFNESS, MOUNT, LATE = 400.0, 0.01, 3e-4
 
@@ -29,7 +29,7 @@ def test_late_encoders_are_no_turn_of_the_imu() -> None:
     )
     fit = fit_axis([recording], FOOT, "pitch", LINEAR)
     assert fit is not None
-    blocks, shown = with_turns(fit, [recording], MOUNT)
+    tangent, shown = with_turns(Tangent.of(fit, [recording], False), MOUNT)
     assert shown.tolist() == [False, True, False]
-    (told,) = turn_told(fit_blocks(blocks), shown)
+    (told,) = turn_told(tangent.least_squares, shown)
     assert told.angles[1] == pytest.approx(0.0, abs=1e-3)

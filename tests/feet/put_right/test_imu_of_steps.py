@@ -14,11 +14,12 @@ from plantar.contact.stances import Stances
 from plantar.conventions import Array
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
-from plantar.feet.interval_width.imu_turn import imu_turn_causes
+from plantar.feet.interval_width.sensor_causes import imu_turn_causes
 from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.put_right.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown
 from plantar.feet.recording import Recording
+from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
 from plantar.models import KelvinVoigt
 from plantar.signals.filters import differentiate
@@ -140,13 +141,14 @@ def test_what_is_not_known_of_the_turn_widens_the_fit(read: Recording) -> None:
     logs = ready(read)
     fit = fitted(logs)[FOOT].fits["pitch"]
     (wide,), (narrow,) = (
-        imu_turn_causes(fit, logs.fitted, ImuTurn.unknown(std)) for std in (MOUNT, MOUNT / 2)
+        imu_turn_causes(Tangent.of(fit, logs.fitted, False), ImuTurn.unknown(std))
+        for std in (MOUNT, MOUNT / 2)
     )
     np.testing.assert_allclose(wide.share, 2 * narrow.share)
     assert wide.share[0] > abs(fit.values[0] - STIFFNESS) / 4
-    assert imu_turn_causes(fit, logs.fitted, ImuTurn.unknown(0.0)) == []
+    assert imu_turn_causes(Tangent.of(fit, logs.fitted, False), ImuTurn.unknown(0.0)) == []
     standing = [replace(read, stances={FOOT: None})]
-    assert imu_turn_causes(fit, standing, ImuTurn.unknown(MOUNT)) == []
+    assert imu_turn_causes(Tangent.of(fit, standing, False), ImuTurn.unknown(MOUNT)) == []
 
 
 def test_a_turn_far_beyond_the_robot_files_is_a_warning() -> None:

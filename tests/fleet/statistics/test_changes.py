@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from plantar.conventions import MONTH
 from plantar.fleet.statistics.changes import Change, _is_outlier, history_of
 from plantar.fleet.statistics.control_chart import Limits
-from plantar.fleet.statistics.trend import MONTH
 
 DAYS = np.arange(365.0)
 NOISE = 0.01  # of a day

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import linregress
 
-from plantar.fleet.statistics.trend import MONTH, trend_of
+from plantar.conventions import MONTH
+from plantar.fleet.statistics.trend import trend_of
 
 
 def test_the_line_is_the_textbooks() -> None:

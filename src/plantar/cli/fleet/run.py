@@ -16,10 +16,11 @@ from plantar.cli.console.terminal import end_progress, progress
 from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.files import refuse_file
-from plantar.fleet.cluster import SHARE, connected, dashboard, seen_by_workers
+from plantar.fleet.cluster import connected, dashboard, seen_by_workers
 from plantar.fleet.manifest import read_manifest
 from plantar.fleet.places import Store, is_remote
 from plantar.fleet.run import Outcome, Progress, run_fleet
+from plantar.logs.readers.read_limit import SHARE
 from plantar.results.io import dump_json
 
 OUT_HELP = "Folder, or fsspec URL such as s3://bucket/fleet, for finished groups, tables and fleet.html."

@@ -8,7 +8,7 @@ ankle.
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
@@ -22,14 +22,12 @@ from plantar.exporters.contact.springs import (
     sliding_note,
     spring_foot,
 )
+from plantar.exporters.job import Job
 from plantar.exporters.poses import pose
 from plantar.exporters.shapes import taken_off
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 LIGHT: Final = (1e-3, 1e-6)  # kg and kg·m² of a point's link: Bullet refuses to move one that weighs nothing

@@ -9,11 +9,12 @@ page on parsing multibody files).
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.springs import FRICTION, RADIUS, Placed, placed, said, spring_foot
+from plantar.exporters.job import Job
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.drake import MESHES, URI, tag
 from plantar.exporters.sdf.from_urdf import tree_of
@@ -21,9 +22,6 @@ from plantar.exporters.sdf.tree import SdfTree, relative, set_pose
 from plantar.exporters.shapes import taken_off
 from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 GROUND: Final = 1e9  # N/m: of a floor that is no second spring; Drake's own default is as soft as a foot

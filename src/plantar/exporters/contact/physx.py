@@ -8,7 +8,7 @@ is a sublayer and stays as it is.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from plantar.conventions import GRAVITY
 from plantar.errors import ExportError
@@ -23,12 +23,10 @@ from plantar.exporters.contact.springs import (
     sliding_note,
     spring_foot,
 )
+from plantar.exporters.job import Job
 from plantar.exporters.usd.conventions import identifier
 from plantar.exporters.usd.stage import ankle_of, layer_above, quiet, standing_shapes, text_of, with_scene
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 OPTIONAL_MODEL = True
 

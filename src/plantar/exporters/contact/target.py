@@ -6,7 +6,7 @@ The shapes that stood on the ground stay, to be seen and weighed, but touch noth
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -17,14 +17,12 @@ from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
 from plantar.exporters.contact.fit import LOADS, STEPS, Check, Fitted, fitted
 from plantar.exporters.contact.hysteresis import carry, take_out
 from plantar.exporters.contact.springs import vertical_note
+from plantar.exporters.job import Job
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import opened
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.xml_file import child_of, numbers, to_text
 from plantar.notes import Note, Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 HYSTERESIS_IN_LOOP = True

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from plantar.errors import ExportError, needs
 from plantar.exporters.bush import FootBush
+from plantar.exporters.job import Job
 from plantar.exporters.mjcf.file import load_mjcf
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.exporters.xml_file import child_of
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 MESHES = {".stl", ".obj"}  # what MuJoCo's importer reads
 STIFF = "0.004 1"  # solref of every shape: at MuJoCo's own 0.02 the contact is as soft as some bushes

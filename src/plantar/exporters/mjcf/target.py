@@ -9,13 +9,14 @@ about y (pitch), hinge about x (roll), which is `R_ankle_sole = Ry(pitch) Rx(rol
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import moved_note, plate_note, updated_note
+from plantar.exporters.job import Job
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import STIFF, opened
 from plantar.exporters.mjcf.hysteresis import set_slip, slip_joint
@@ -23,9 +24,6 @@ from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sol
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import child_of, numbers, to_text
 from plantar.notes import Note, Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 HYSTERESIS = True

@@ -10,22 +10,19 @@ ankle and sole apart.
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from plantar.conventions import AXES, rotation_from_rpy
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
+from plantar.exporters.job import Job
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.target import fixed_to_ankle, insert_bushes
 from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import child_of, numbers, to_text
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 MESHES = (".obj", ".vtk", ".gltf")  # what Drake makes collision shapes of

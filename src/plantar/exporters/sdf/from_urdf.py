@@ -5,17 +5,14 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Collection
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from plantar.conventions import Array
 from plantar.errors import ExportError
+from plantar.exporters.job import Job
 from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.urdf.tree import UrdfTree, origin_of
 from plantar.exporters.xml_file import numbers, vector
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic"}
 

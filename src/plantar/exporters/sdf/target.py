@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import moved_note, plate_note, updated_note
+from plantar.exporters.job import Job
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.sdf.from_urdf import tree_of
 from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
@@ -22,9 +22,6 @@ from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import child_of, numbers, to_text, vector
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # m, rad: limits far beyond any bush

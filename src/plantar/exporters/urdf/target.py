@@ -8,22 +8,19 @@ joint's <dynamics> (sdformat, SDFExtension.hh and parser_urdf.cc).
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush, earlier_joints
 from plantar.exporters.comment import moved_note, plate_note, updated_note
+from plantar.exporters.job import Job
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import child_of, numbers, to_text, vector
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 EXTENDS = True
 REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # limits far beyond any bush: a URDF must have some

@@ -8,21 +8,19 @@ stood on the ground, and `collisionEnabled = false` on those.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import plate_note
+from plantar.exporters.job import Job
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.exporters.spring import Spring
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
 from plantar.exporters.usd.stage import ankle_of, layer_above, quiet, standing_shapes, text_of, with_scene
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 
 def write(job: Job, model: Path, notes: Notes) -> str:

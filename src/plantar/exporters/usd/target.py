@@ -7,19 +7,15 @@ linear drives stay in N/m and N·s/m (openusd.org, UsdPhysicsDriveAPI; PhysX' US
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
+from plantar.exporters.job import Job
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.exporters.spring import Spring
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
 from plantar.notes import Notes
-
-if TYPE_CHECKING:
-    from plantar.exporters.job import Job
 
 OPTIONAL_MODEL = True
 

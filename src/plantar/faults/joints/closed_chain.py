@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.relative_pose import relative_pose
+from plantar.contact.slip_indicator import YAW_MOMENT_ARM
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.errors import clock
 from plantar.faults.joints.names import legs
@@ -35,7 +36,6 @@ ENCODER_STEPS = 5.0  # of the joint's own encoder, likewise: between two of them
 LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, and do little harm
 SAMPLES = 500  # spread over that time: enough to tell
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
-YAW_MOMENT_ARM = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
 # Share of the soles' motion that is left with the legs exchanged: what sways is seldom symmetric.
 EXCHANGED = 0.4
 CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave

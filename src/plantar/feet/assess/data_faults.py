@@ -17,7 +17,7 @@ from plantar.notes import Note
 from plantar.results.feet import Parameter
 from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
-from plantar.sensors.delays.torque_delay import TORQUES_LATE
+from plantar.sensors.moments.torque_delay import TORQUES_LATE
 
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(

@@ -20,6 +20,7 @@ from plantar.estimation.linear import fits_of_halves
 from plantar.estimation.weighted_mean import weighted_mean
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import beside
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
 
@@ -29,19 +30,19 @@ TINY = 1e-9  # N.m.s/rad: exact logs have no deviation
 RATE = 1  # the place of the rate, and of damping, in spring and damper
 
 
-def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> list[Note]:
+def late_recordings(tangent: Tangent, wide: AxisFit) -> list[Note]:
     """A warning of the recording whose damping differs from the others' and moves theirs out of the interval of `wide`.
 
-    tangent: the recordings' `tangent_blocks`, whose torque is about the place that the fit has found: about another,
-    motions about the other axis show as damping. Where a memory leaves less than a damping of its own does, it is the
+    The torque is about the place that the fit has found: about another, motions about the other axis show as damping.
+    Where a memory leaves less than a damping of its own does, it is the
     memory that makes damping differ. Of a foot that steps, whose landings shake its damping more than delays do, the
     halves of each recording are compared: they have the same landings.
     """
-    if tangent[0].stances is not None:
-        return _late_halves(wide, tangent)
-    if shared or len(tangent) < 2:
+    if tangent.steps:
+        return _late_halves(tangent.blocks, wide)
+    if tangent.shared or len(tangent.blocks) < 2:
         return []
-    blocks = [_spring_and_damper(block) for block in tangent]
+    blocks = [_spring_and_damper(block) for block in tangent.blocks]
     sureness = sureness_of_own(blocks, RATE)
     most = int(np.argmax(sureness))
     if sureness[most] < SURE:
@@ -49,7 +50,7 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
     found = fit_blocks([_with_own_damping(each, each is blocks[most]) for each in blocks])
     if abs(found.values[RATE] - fit_blocks(blocks).values[RATE]) < NORMAL95 * wide.std[RATE]:
         return []
-    if not isinstance(wide.model, KelvinVoigt) and fit_blocks(tangent).squares < found.squares:
+    if not isinstance(wide.model, KelvinVoigt) and tangent.least_squares.squares < found.squares:
         return []
     apart, late = found.values[-1], -1e3 * found.values[-1] / found.values[0]
     text = (
@@ -60,11 +61,11 @@ def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> li
     return [Note(RECORDING_LATE, "warning", text)]
 
 
-def _late_halves(wide: AxisFit, tangent: Sequence[Block]) -> list[Note]:
+def _late_halves(blocks: Sequence[Block], wide: AxisFit) -> list[Note]:
     """The same of the halves of all recordings of a foot that steps."""
     halves = [
         fits_of_halves(block)
-        for block in tangent
+        for block in blocks
         if block.stances is not None and len(block.stances.split()) >= FEWEST
     ]
     if not halves:

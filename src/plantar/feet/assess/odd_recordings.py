@@ -12,13 +12,13 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import NORMAL95, SURE
-from plantar.estimation import Block, fit_blocks, influences_of, interval95
+from plantar.estimation import fit_blocks, influences_of, interval95
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.estimation.random_effects import Differences, Odd, furthest
 from plantar.feet.interval_width.between_recordings import among, beside_angle_errors, beside_one
-from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, beside, recordings_of
+from plantar.feet.regression.regression_data import all_beside, beside
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.walk_rows import WalkStiffness
@@ -31,15 +31,17 @@ FAR = 0.75  # of the stiffness of all together: no rubber is so far off, but a w
 TELLS = 0.01
 
 
-def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> list[Note]:
+def odd_recordings(tangent: Tangent, wide: AxisFit) -> list[Note]:
     """A warning of the standing recording whose stiffness is far from the others'; of two that differ, of both.
 
-    tangent: the recordings' `tangent_blocks`. Those are compared that tell the stiffness. Where a memory leaves less
-    than one stiffness more does, it is the memory that makes small motions stiffer than large ones.
+    Those are compared that tell the stiffness. Where a memory leaves less than one stiffness more does, it is the
+    memory that makes small motions stiffer than large ones.
     """
-    if tangent[0].stances is not None or shared or len(tangent) < 2:
+    if tangent.steps or tangent.shared or len(tangent.blocks) < 2:
         return []
-    blocks = [replace(block, regressor=block.regressor[:, : len(BESIDE)], noise=None) for block in tangent]
+    blocks = [
+        replace(block, regressor=block.regressor[:, : len(BESIDE)], noise=None) for block in tangent.blocks
+    ]
     fit = fit_blocks(blocks)
     torques = [block.regressor @ fit.values for block in blocks]
     told = [float(own[0] @ torque) for own, torque in zip(influences_of(blocks), torques, strict=True)]
@@ -52,19 +54,17 @@ def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> lis
     if odd is not None and not isinstance(wide.model, KelvinVoigt):
         place = tell[odd.place]
         own = [torque[:, None] * float(each == place) for each, torque in enumerate(torques)]
-        if fit_blocks(tangent).squares < fit_blocks(all_beside(blocks, own)).squares:
+        if tangent.least_squares.squares < fit_blocks(all_beside(blocks, own)).squares:
             return []
     return _notes(odd, wide, [blocks[place].label for place in tell])
 
 
-def odd_walks(
-    wide: AxisFit, walks: Sequence[WalkStiffness], recordings: Sequence[Recording], tangent: Sequence[Block]
-) -> list[Note]:
-    """The same of fitted walks, each by itself, by the scatter of its own stances; and of those of the `recordings` in
-    which the foot stands meanwhile. tangent: as of `odd_recordings`."""
+def odd_walks(tangent: Tangent, wide: AxisFit, walks: Sequence[WalkStiffness]) -> list[Note]:
+    """The same of fitted walks, each by itself, by the scatter of its own stances; and of the recordings in which the
+    foot stands meanwhile."""
     known = [(row.motion, row.stiffness, row.interval95) for row in walks if row.role == "fit"]
     if known:
-        known += _standing(wide.foot, recordings_of(tangent, recordings), tangent)
+        known += _standing(tangent)
     stiffness = float(wide.values[0])
     if len(known) < 2 or not stiffness > 0:
         return []
@@ -76,12 +76,10 @@ def odd_walks(
     return _notes(odd, wide, [name for name, _, _ in known])
 
 
-def _standing(
-    foot: str, recordings: Sequence[Recording], blocks: Sequence[Block]
-) -> Iterator[tuple[str, float, tuple[float, float]]]:
+def _standing(tangent: Tangent) -> Iterator[tuple[str, float, tuple[float, float]]]:
     """Name, stiffness and 95 % interval of each recording in which the foot stands, by the columns of walks."""
-    for recording, block in zip(recordings, blocks, strict=True):
-        if recording.stances[foot] is None and block.common_nuisance is not None:
+    for recording, block in zip(tangent.recordings, tangent.blocks, strict=True):
+        if recording.stances[tangent.fit.foot] is None and block.common_nuisance is not None:
             alone = beside(replace(block, stances=None, common_nuisance=None), block.common_nuisance)
             found = fit_blocks([alone])
             noise = attenuation([alone], found.values, shared_offset=False)

@@ -7,15 +7,14 @@ every other model: taken for hardening or for a memory, it makes the spring too 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, SURE, Array
-from plantar.estimation import Block, fit_blocks
+from plantar.estimation import fit_blocks
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, blocks_of, recordings_of
+from plantar.feet.regression.regression_data import all_beside, blocks_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 
 SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step
@@ -23,24 +22,20 @@ BETTER = 1.5  # times less is left of the squares than by the model that was fou
 CODE = "play"
 
 
-def play_notes(
-    recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
-) -> list[Note]:
+def play_notes(tangent: Tangent, wide: AxisFit) -> list[Note]:
     """A warning where play explains a standing foot's torque far better than the model that was found, and moves
     stiffness or damping out of the interval of `wide`.
-
-    tangents: the recordings' `tangent_blocks`.
     """
-    if tangents[0].stances is not None:
+    if tangent.steps:
         return []
-    blocks = blocks_of(recordings, wide.foot, wide.axis, drift=not shared)
+    blocks = blocks_of(tangent.recordings, wide.foot, wide.axis, drift=not tangent.shared)
     column = ROTATIONAL_AXES.index(wide.axis)
-    signs = [_sign(one, wide.foot, column)[:, None] for one in recordings_of(blocks, recordings)]
-    found = fit_blocks(all_beside(blocks, signs), shared_offset=shared)
+    signs = [_sign(one, wide.foot, column)[:, None] for one in tangent.recordings]
+    found = fit_blocks(all_beside(blocks, signs), shared_offset=tangent.shared)
     stiffness, loss = float(found.values[0]), -float(found.values[2])
     if stiffness <= 0 or loss < SURE * float(found.std[2]):
         return []
-    usual = fit_blocks(tangents, shared_offset=shared)
+    usual = tangent.least_squares
     if usual.squares < BETTER * found.squares or wide.holds(found.values[:2] - usual.values[:2]):
         return []
     text = (

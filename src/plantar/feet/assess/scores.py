@@ -10,10 +10,9 @@ from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.regression.prediction import predict
+from plantar.feet.regression.regression_data import FEWEST_SAMPLES
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import score
-
-FEWEST_SAMPLES = 50  # of one recording, for a score
 
 
 def score_axis(

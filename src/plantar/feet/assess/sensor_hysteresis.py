@@ -6,48 +6,39 @@ bush, the term is never negative. Spring and damper alone take it for less dampi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
-from plantar.estimation import Block, fit_blocks
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES
+from plantar.feet.assess.late_recordings import RATE
 from plantar.feet.fit.hidden_memory import has_memory
-from plantar.feet.recording import Recording
+from plantar.feet.place.misread_joints import PART
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, recordings_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 
 # Of the fast rate (98th percentile), within which its sign changes: behind a filter it is no step.
 SOFT = 0.02
 SURE = 4.0  # deviations of the hysteresis: of healthy feet it is below 3
-RATE = 1  # the place of damping in spring and damper
-# Of the damping's interval, by which the sign moves it: a sensor stays behind only after it has turned far enough, so
-# that a sign gives back a sixth to a half of what is missing.
-PART = 0.5
 HYSTERESIS = "sensor_hysteresis"
 
 
-def hysteresis_notes(
-    recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
-) -> list[Note]:
+def hysteresis_notes(tangent: Tangent, wide: AxisFit) -> list[Note]:
     """A warning where a standing foot's torque stays behind its angle by the same amount at any speed, and that moves
     its damping far within the interval of `wide`: there is more behind it.
-
-    tangents: the recordings' `tangent_blocks`.
     """
-    if tangents[0].stances is not None or has_memory(wide.model):
+    if tangent.steps or has_memory(wide.model):
         return []
-    rates = [_rate(one, wide) for one in recordings_of(tangents, recordings)]
+    column = ROTATIONAL_AXES.index(wide.axis)
+    rates = tangent.rows(lambda one: one.bushes[wide.foot].rate[:, column])
     fast = float(np.percentile(np.abs(np.concatenate(rates)), 98))
     if fast == 0:
         return []
     signs = [np.tanh(rate / (SOFT * fast))[:, None] for rate in rates]
-    found = fit_blocks(all_beside(tangents, signs), shared_offset=shared)
+    found = tangent.beside(signs).least_squares
     behind = -float(found.values[-1])
     if behind < SURE * float(found.std[-1]):
         return []
-    moved = float(found.values[RATE] - fit_blocks(tangents, shared_offset=shared).values[RATE])
+    moved = float(found.values[RATE] - tangent.least_squares.values[RATE])
     if abs(moved) < PART * NORMAL95 * float(wide.std[RATE]):
         return []
     text = (
@@ -56,9 +47,3 @@ def hysteresis_notes(
         "beside its torques; or larger motions)"
     )
     return [Note(HYSTERESIS, "warning", text)]
-
-
-def _rate(recording: Recording, fit: AxisFit) -> Array:
-    """The bush's rate [rad/s] at the rows of a fit, (n,)."""
-    column = ROTATIONAL_AXES.index(fit.axis)
-    return np.asarray(recording.bushes[fit.foot].rate[recording.rows(fit.foot), column])

@@ -8,9 +8,8 @@ import numpy as np
 
 from plantar.conventions import Axis
 from plantar.results.feet import ValidationRow, Verdict
+from plantar.results.feet_rows import USABLE_WIDTH, WEAK_WIDTH
 
-USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
-WEAK_WIDTH = 0.5  # likewise: beyond it the value is not told from half or twice as much
 LEAST_SECONDS = 3.0  # of used samples
 LEAST_EXCITATION = 1e-7  # rad rms: no sensor tells as little, it is rounding
 SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself

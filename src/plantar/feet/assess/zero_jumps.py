@@ -16,6 +16,7 @@ import numpy as np
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
 from plantar.estimation import Block, LinearFit, fit_blocks
+from plantar.feet.exclusion.outliers import WORTH
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -30,7 +31,6 @@ BESIDE, BRIEF = 1.0, 0.3  # s before and after a moment, over which means are co
 FAR = 8.0  # times the usual difference of two such means
 EXPLAINS = 0.5  # of the squares that spring and damper leave of the recording
 NEARLY_ALL = 0.95  # likewise, of a sensor that is loose: the turns of a memory are not as sharp
-WORTH = 0.03  # of the recording's spread of torque: a smaller jump does no harm
 STATES = np.linspace(-1.0, 1.0, 21)  # of a memory at the start of a log
 ROUNDING = 1e-12  # of a column's squares: what pieces leave of it
 CODE = "zero_jump"

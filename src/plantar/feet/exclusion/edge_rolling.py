@@ -18,6 +18,7 @@ from plantar.contact.polygon import edge_distances
 from plantar.contact.reasons import Reason
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_blocks
+from plantar.estimation.errors_in_variables import NORMAL
 from plantar.faults.air_readings import TORQUE_OFF
 from plantar.feet.exclusion.moved_edges import moved_inwards
 from plantar.feet.recording import Recording, filtered
@@ -141,7 +142,7 @@ def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, 
     # A zero of the torque moves the edge by zero / load.
     moment = depth * load
     stop = float(np.median(moment[sure]))
-    spread = PRESSURE_NOISE * 1.4826 * float(np.median(np.abs(moment[sure] - stop)))
+    spread = PRESSURE_NOISE * NORMAL * float(np.median(np.abs(moment[sure] - stop)))
     pinned = visits & (moment < stop + np.maximum(spread, LEAST_BAND * load))
     rest = flat & np.isfinite(excess).all(axis=1) & ~pinned & ~widened(sure, round(SMEAR / period))
     return sure | (_lean(excess, pinned, rest, period) > LEAST_LEAN)

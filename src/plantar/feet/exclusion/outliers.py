@@ -18,7 +18,7 @@ from plantar.signals.segments import runs
 BIN = 0.1  # s
 AROUND = 6.0  # s whose usual misfit a bin is compared with
 FAR_MISFITS = 6.0  # usual misfits
-WORTH = 0.03  # of the recording's spread of torque: a smaller misfit does no harm
+WORTH = 0.03  # of the recording's spread of torque: a smaller misfit, or a jump of the zero, does no harm
 LONGEST = 1.0  # s: what lasts longer is not a bad sample but another behaviour
 MOST = 0.1  # share of a recording that may be outliers
 MOVING = 0.1  # share of the squares of both angle and torque: a stretch with so much is what the motion consists of

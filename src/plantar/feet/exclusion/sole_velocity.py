@@ -13,6 +13,7 @@ import numpy as np
 from plantar.contact.deflection import BushState, onto_sole
 from plantar.contact.slip_indicator import SLIP_CUTOFF, usual_deviation
 from plantar.conventions import Array, Mask, cross, rotated
+from plantar.estimation.errors_in_variables import NORMAL
 from plantar.estimation.velocity_drift import fit_drift
 from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
@@ -162,7 +163,7 @@ def _drift(
 def _usual(change: Array) -> float:
     """Deviation of either component of changes (n, 2) around their median, as most of them are."""
     known = change[complete(change)].T
-    return 1.4826 * float(median(np.abs(known - median(known)[:, None]).ravel())) if known.size else 0.0
+    return NORMAL * float(median(np.abs(known - median(known)[:, None]).ravel())) if known.size else 0.0
 
 
 def _mean_square(acceleration: Array, period: float) -> Array:

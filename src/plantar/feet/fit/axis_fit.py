@@ -57,7 +57,7 @@ def fit_axis(
     the bush may be off by; not `timed`: sensors may be late by any time, which looks like a memory: none is chosen.
     `before`: the fit of the same recordings, with a few samples more or about another place, to go on from.
     """
-    shared = settings.offset == "shared"
+    shared = settings.shared
     if model is None and settings.model != AUTOMATIC:
         model = MODELS[settings.model]
     choice = None if before is None else before.choice
@@ -94,7 +94,7 @@ def _chosen(
     timed: bool,
     before: ModelChoice | None,
 ) -> _Chosen | None:
-    shared = settings.offset == "shared"
+    shared = settings.shared
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
     if not blocks:
         return None

@@ -25,6 +25,7 @@ from plantar.feet.fit.compliances import ALIKE, Compliances
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter, Verdict
+from plantar.results.feet_rows import USABLE_WIDTH, WEAK_WIDTH
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import complete
@@ -32,7 +33,6 @@ from plantar.signals.segments import complete
 FEWEST_SAMPLES = 100  # in double support, of one recording
 RELIABLE = 10.0  # times its noise's variance: that of a load from which a compliance is read
 UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
-USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
 
 UNCLEAR = "the heights of the soles do not follow the load clearly"
 UNLIKE = "only the sum of both compliances shows, and pitch or roll of the feet differ"

@@ -7,7 +7,6 @@ little of. It then predicts unseen motions better, and its terms mean nothing.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
@@ -15,8 +14,7 @@ from plantar.estimation import interval95
 from plantar.feet.fit.hidden_memory import NOT_EXCLUDED
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
-
-FAR: Final = 0.15  # of the stiffness: with an interval as wide to either side a number is no longer usable
+from plantar.results.feet_rows import USABLE_WIDTH
 
 
 def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
@@ -56,7 +54,7 @@ def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
     fit, spring: with the deviations of all that is unsure about robot and sensors.
     """
     low, high = interval95(float(spring.numbers[0]), float(spring.std[0]), float(spring.freedom[0]))
-    far = abs(fit.numbers[0] - spring.numbers[0]) > FAR * abs(spring.numbers[0])
+    far = abs(fit.numbers[0] - spring.numbers[0]) > USABLE_WIDTH * abs(spring.numbers[0])
     return bool(far and not low < fit.numbers[0] < high)
 
 

@@ -8,16 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import SURE, UNIFORM, Array
-from plantar.estimation import Block, fit_blocks, influences_of
+from plantar.estimation import Block
 from plantar.estimation.errors_in_variables import mostly_error, slow_share
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.interval_width.yaw_zero import YawZeros, fit_beside, yaw_zeros
-from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, tangent_blocks
+from plantar.feet.regression.regression_data import all_beside
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 
 NAME = "between recordings"
@@ -82,45 +81,41 @@ def apart_notes(apart: Apart) -> list[Note]:
     return [Note("between_recordings", "warning" if apart.shown[0] > MUCH else "info", text)]
 
 
-def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
+def axis_differences(tangent: Tangent) -> AxisDifferences | None:
     """Shares by which spring and damper of each recording are beside the first one's: what all share is K's own.
 
     Of many those are compared that tell the stiffness, of few all are; None where there is nothing to compare.
     """
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
-    if not _comparable(blocks, shared):
+    if not _comparable(tangent):
         return None
-    effects = effects_of(fit, blocks, influences_of(blocks))
-    return differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
+    return differences_of(tangent, effects_of(tangent), yaw_zeros(tangent))
 
 
-def between_recordings(
-    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], every: Apart, shared: bool
-) -> list[Cause]:
+def between_recordings(tangent: Tangent, every: Apart) -> list[Cause]:
     """By how much recordings of a foot that stands move the fit beyond their own deviations.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
     taken to differ by a share of spring and damper, as this axis shows it, or `every` axis together where that is more;
     so are they for a number that one recording tells more of than all others together: a refit without it is the
     others' noise. Where every axis shows that recordings differ, few that know most of a number differ no less: their
-    refits may be alike by chance. blocks: the recordings' `tangent_blocks`.
+    refits may be alike by chance.
     """
-    if not _comparable(blocks, shared):
+    if not _comparable(tangent):
         return []
-    influences = influences_of(blocks)
-    told = np.array([np.sum(own**2, axis=1) for own in influences])
+    blocks = tangent.blocks
+    told = np.array([np.sum(own**2, axis=1) for own in tangent.influences])
     few = (len(blocks) < FEWEST_RECORDINGS) | (told.max(axis=0) > MOST * told.sum(axis=0))
-    effects = effects_of(fit, blocks, influences)
+    effects = effects_of(tangent)
     by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        own = differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
+        own = differences_of(tangent, effects, yaw_zeros(tangent))
         here = [] if own is None else [_alone_apart(own)]
         apart = max([*here, every], key=lambda each: each.share)
         std, freedom = apart.share * by_share, apart.others
     if not few.all():
         refits = np.diag(jackknife(values_without_each(blocks))[0])
-        beyond = np.sqrt(np.maximum(refits - fit_blocks(blocks).std ** 2, 0.0))
+        beyond = np.sqrt(np.maximum(refits - tangent.least_squares.std**2, 0.0))
         if every.shown is not None:
             fewer = by_share > np.abs(effects.sum(axis=0)) / np.sqrt(FEWEST_RECORDINGS)
             beyond = np.where(fewer, np.maximum(beyond, every.share * by_share), beyond)
@@ -128,16 +123,14 @@ def between_recordings(
     return [Cause(NAME, std, 1.0, freedom)]
 
 
-def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
+def _comparable(tangent: Tangent) -> bool:
     """Whether the recordings of an axis can be told apart: several, each with its own offset. Of many walks the fit's
     own deviation comes from refits without one of them each, which a share of that one does not survive."""
-    many = len(blocks) >= FEWEST_RECORDINGS and blocks[0].stances is not None
-    return not shared and len(blocks) > 1 and not many
+    count = len(tangent.blocks)
+    return not tangent.shared and count > 1 and not (count >= FEWEST_RECORDINGS and tangent.steps)
 
 
-def differences_of(
-    fit: AxisFit, blocks: Sequence[Block], effects: Array, zeros: YawZeros | None = None
-) -> AxisDifferences | None:
+def differences_of(tangent: Tangent, effects: Array, zeros: YawZeros | None = None) -> AxisDifferences | None:
     """Those of the recordings whose `effects` make more than the share TELLS of K; None where it is but one.
 
     Of few all are compared, however little they tell: nothing else says how far the one that tells most is off. In
@@ -147,14 +140,15 @@ def differences_of(
     could show is more than rubber does, and they do not, as of a motion for each axis, the number is as from that one
     alone.
     """
-    tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * abs(float(fit.values[0]))).tolist()
+    blocks, stiffness = tangent.blocks, max(abs(float(tangent.fit.values[0])), 1e-300)
+    tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * stiffness).tolist()
     alone = len(tell) < 2
     if len(blocks) < FEWEST_RECORDINGS:
         tell = list(range(len(blocks)))
     if len(tell) < 2:
         return None
-    found, stiffness = fit_blocks(blocks), max(abs(float(fit.values[0])), 1e-300)
-    differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
+    found = tangent.least_squares
+    differences = among(beside_one(blocks, _torques(tangent), tell[0], zeros), tell)
     if mostly_error(blocks, stiffness):
         return None
     little = np.abs(effects[:, 0]) < TELLS * stiffness
@@ -206,14 +200,14 @@ def among(found: Differences, places: Sequence[int]) -> Differences:
     return Differences(found.shares[own], found.covariance[np.ix_(own, own)])
 
 
-def effects_of(fit: AxisFit, blocks: Sequence[Block], influences: Sequence[Array]) -> Array:
-    """What each recording's spring and damper add to the numbers, (blocks, k); `influences_of` the blocks."""
-    each = zip(influences, _torques(fit, blocks), strict=True)
+def effects_of(tangent: Tangent) -> Array:
+    """What each recording's spring and damper add to the numbers, (blocks, k)."""
+    each = zip(tangent.influences, _torques(tangent), strict=True)
     return np.array([own @ torque for own, torque in each])
 
 
-def _torques(fit: AxisFit, blocks: Sequence[Block]) -> list[Array]:
-    return [block.regressor[:, :2] @ fit.values[:2] for block in blocks]
+def _torques(tangent: Tangent) -> list[Array]:
+    return [block.regressor[:, :2] @ tangent.fit.values[:2] for block in tangent.blocks]
 
 
 def _alone(torques: Sequence[Array], own: int) -> list[Array]:

@@ -6,11 +6,8 @@ stiffness is off by a quarter, and walks differ by about as much as the stances 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.random_effects import HEAVY, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.interval_width.between_recordings import (
@@ -20,27 +17,28 @@ from plantar.feet.interval_width.between_recordings import (
     effects_of,
 )
 from plantar.feet.interval_width.cause import Cause
-from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.tangent import Tangent
 
 NAME = "between walks"
 
 
-def between_walks(fit: AxisFit, blocks: Sequence[Block], every: Apart) -> list[Cause]:
+def between_walks(tangent: Tangent, every: Apart) -> list[Cause]:
     """By how much another walk may differ: a share of spring and damper, as this axis shows it, or `every` axis
     together where that is more.
 
     A walk by itself leaves what is usual. From FEWEST_RECORDINGS on the fit's own deviation holds what differs. Of a
     memory's numbers each walk's are not looked at: they are taken to be as unsure by it as the stiffness is.
     """
+    fit, blocks = tangent.fit, tangent.blocks
     stiffness = max(abs(float(fit.values[0])), 1e-300)
     if len(blocks) >= FEWEST_RECORDINGS:
-        moved = np.abs(fit.numbers) * float(fit_blocks(blocks).std[0]) / stiffness
+        moved = np.abs(fit.numbers) * float(tangent.least_squares.std[0]) / stiffness
         moved[:2] = 0.0
         return [Cause(NAME, moved, 1.0, len(blocks) - 1)]
-    effects = effects_of(fit, blocks, influences_of(blocks))
-    differences = differences_of(fit, blocks, effects)
+    effects = effects_of(tangent)
+    differences = differences_of(tangent, effects)
     if differences is None:
-        deviation = float(fit_blocks(blocks).std[0])
+        deviation = float(tangent.least_squares.std[0])
         own = Apart(share_between([], deviation / stiffness).share, int(HEAVY))
     else:
         own = _shown(differences)

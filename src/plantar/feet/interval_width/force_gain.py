@@ -20,7 +20,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_balance import TorqueGain
+from plantar.sensors.moments.torque_gains import TorqueGain
 
 WINDOW = 2.0  # s, over whose Hann window accelerations average out that repeat once a second and faster
 CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its sensors were zeroed under load

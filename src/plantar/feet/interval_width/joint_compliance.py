@@ -7,7 +7,6 @@ root is not known so simply, and left out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import cast
 
 import numpy as np
@@ -17,13 +16,11 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.dynamics import Contact
 from plantar.dynamics.equation import equation_of
 from plantar.dynamics.motion import Motion
-from plantar.estimation import Block, effect_of, influences_of
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.place.bush_place import centre_columns
 from plantar.feet.recording import Recording, within_stances
-from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import torque_of_angle
-from plantar.feet.regression.regression_data import all_beside, recordings_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.robot.model import RobotModel
 from plantar.signals.orientation import attitude
 
@@ -32,28 +29,25 @@ NAME = "joint compliance"
 LITTLE = 1e-6
 
 
-def joint_compliance_causes(
-    robot: RobotModel, fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], shared: bool
-) -> list[Cause]:
+def joint_compliance_causes(robot: RobotModel, tangent: Tangent) -> list[Cause]:
     """What the robot file's `joint_compliance` makes of a fit, the same in all joints; none where that is 0.
 
-    recordings: with all of their logs; blocks: their `tangent_blocks`, as they are fitted.
+    tangent: with all of the recordings' logs.
     """
-    compliance = robot.uncertainty.joint_compliance
+    compliance, fit = robot.uncertainty.joint_compliance, tangent.fit
     if not compliance:
         return []
-    column, size = ROTATIONAL_AXES.index(fit.axis), blocks[0].regressor.shape[1]
-    chosen, bent = recordings_of(blocks, recordings), list[Array]()
-    for one in chosen:
-        torque = torque_of_angle(one, fit, _bending(robot, one)[fit.foot][:, column], LITTLE)
-        bent.append(torque[one.rows(fit.foot)])
+    column, size = ROTATIONAL_AXES.index(fit.axis), tangent.blocks[0].regressor.shape[1]
+
+    def bent(one: Recording) -> Array:
+        return torque_of_angle(one, fit, _bending(robot, one)[fit.foot][:, column], LITTLE)
+
     # Hips that bend look like a bush that is higher, which the number follows.
     placed = np.flatnonzero([*fit.moment_arms, fit.turned, *fit.imu_turned])
-    if blocks[0].stances is None:
-        blocks = all_beside(
-            blocks, [centre_columns(one, fit)[one.rows(fit.foot)][:, placed] for one in chosen]
-        )
-    return [Cause(NAME, effect_of(influences_of(blocks, shared_offset=shared), bent)[:size], compliance)]
+    changes = tangent.rows(bent)
+    if not tangent.steps:
+        tangent = tangent.beside(tangent.rows(lambda one: centre_columns(one, fit)[:, placed]))
+    return [Cause(NAME, tangent.effect(changes)[:size], compliance)]
 
 
 def _bending(robot: RobotModel, recording: Recording) -> dict[str, Array]:

@@ -6,25 +6,24 @@ of them. The derivative there says how the squares rise to either side of the co
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from plantar.estimation import fit_blocks
 from plantar.feet.interval_width.cause import Cause
-from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import blocks_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.model_selection.variable_projection import SHAPE_STEP
 
 NAME = "slip angle"
 UNRESOLVED = SHAPE_STEP / 2  # deviation, as a share: the derivative is taken over twice as much either way
 
 
-def slip_angle_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
+def slip_angle_causes(tangent: Tangent) -> list[Cause]:
     """What an element's angle that is claimed to be known better than UNRESOLVED lacks, and what follows it: how the
     fit's values are others beside a slip angle that is SHAPE_STEP larger and smaller."""
+    fit, shared = tangent.fit, tangent.shared
     if fit.slip_angle is None:
         return []
     place = fit.model.shape_terms.index("slip_angle")
@@ -36,7 +35,7 @@ def slip_angle_causes(fit: AxisFit, recordings: Sequence[Recording], shared: boo
         shape = fit.shape.copy()
         shape[place] = share * fit.slip_angle
         moved = replace(fit, shape=shape)
-        blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=moved)
+        blocks = blocks_of(tangent.recordings, fit.foot, fit.axis, drift=not shared, fit=moved)
         ends.append(np.append(fit_blocks(blocks, shared_offset=shared).values, shape))
     effect = (ends[0] - ends[1]) / (2 * SHAPE_STEP)
     return [Cause(NAME, effect, float(np.sqrt(UNRESOLVED**2 - known**2)))]

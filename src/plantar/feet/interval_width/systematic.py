@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
-from plantar.estimation import Block, effect_of, fit_blocks, influences_of
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array
+from plantar.estimation import Block, fit_blocks
 from plantar.estimation.errors_in_variables import slow_attenuation
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, has_memory, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
+from plantar.feet.interval_width.between_recordings import Apart, between_recordings
+from plantar.feet.interval_width.between_walks import between_walks
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.interval_width.yaw_zero import yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, recordings_of
+from plantar.feet.regression.regression_data import beside
+from plantar.feet.regression.tangent import Tangent
 from plantar.sensors.delays.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.resampling import shifted
@@ -37,67 +40,54 @@ KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions canno
 
 
 def systematic_causes(
-    fit: AxisFit,
-    blocks: Sequence[Block],
-    recordings: Sequence[Recording],
-    sensor_delay: SensorDelay,
-    vertical: VerticalStiffness,
-    shared: bool,
+    tangent: Tangent, sensor_delay: SensorDelay, vertical: VerticalStiffness
 ) -> list[Cause]:
     """The wrenches' delay, the moment arm of the compressed slide and errors of the angle; of feet that step the ends
     of stances and what a memory may share with the spring; of others a softening, a hardening that the model leaves
     out, zeros that differ between stances, and for roll the zero of the yaw torque.
-
-    `blocks`: the recordings' `tangent_blocks`.
     """
-    foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
-    parts = [(one, one.rows(foot)) for one in recordings_of(blocks, recordings)]
-    influences = influences_of(blocks, shared_offset=shared)
-    by_delay = _by_delay(
-        [(one.bushes[foot].torque[:, column], one.period, used) for one, used in parts], sensor_delay
-    )
-    moment_arms = [moment_arm_effect(one, foot)[used, column] for one, used in parts]
+    fit, foot, column = tangent.fit, tangent.fit.foot, ROTATIONAL_AXES.index(tangent.fit.axis)
+    by_delay = [
+        tangent.effect(tangent.rows(late))
+        for late in _late_torques(sensor_delay, lambda one: one.bushes[foot].torque[:, column])
+    ]
+    moment_arms = tangent.rows(lambda one: moment_arm_effect(one, foot)[:, column])
     causes = [
         Cause(
             "delay",
-            max((effect_of(influences, changes) for changes in by_delay), key=lambda effect: abs(effect[0])),
+            max(by_delay, key=lambda effect: abs(effect[0])),
             sensor_delay.std,
             sensor_delay.freedom,
         ),
-        Cause(
-            "moment arm", effect_of(influences, moment_arms), vertical.compliance_std[foot], vertical.freedom
-        ),
-        _angle_errors(fit, blocks, shared),
-        *_hidden_memory(fit, steps=blocks[0].stances is not None),
+        Cause("moment arm", tangent.effect(moment_arms), vertical.compliance_std[foot], vertical.freedom),
+        _angle_errors(tangent),
+        *_hidden_memory(fit, steps=tangent.steps),
     ]
-    if blocks[0].stances is not None:
+    if tangent.steps:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
-        return [*causes, _ends_of_stances(blocks), *_shared_slope(fit, recordings)]
-    causes += [*_softening(fit), *_suspected_hardening(fit, blocks, shared)]
-    causes += _zeros_of_stances(
-        blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
-    )
-    if (zeros := yaw_zeros(fit, blocks, recordings)) is not None:
-        causes.append(yaw_torque_zero(zeros, blocks, influences, shared))
+        return [*causes, _ends_of_stances(tangent.blocks), *_shared_slope(fit, tangent.recordings)]
+    causes += [*_softening(fit), *_suspected_hardening(tangent), *_zeros_of_stances(tangent)]
+    if (zeros := yaw_zeros(tangent)) is not None:
+        causes.append(yaw_torque_zero(zeros, tangent))
     return causes
 
 
-def _by_delay(torques: Sequence[tuple[Array, float, Mask]], sensor_delay: SensorDelay) -> list[list[Array]]:
-    """How torques (N,), sampled each period [s], change in the samples used with their sensors' delay [per s].
+def _late_torques(
+    sensor_delay: SensorDelay, torque: Callable[[Recording], Array]
+) -> list[Callable[[Recording], Array]]:
+    """How a recording's torque (N,) changes with its sensor's delay [per s].
 
-    By their slope; where the delay is in doubt, by as far as it may be off, one way and the other: late by a tenth of a
+    By its slope; where the delay is in doubt, by as far as it may be off, one way and the other: late by a tenth of a
     second, a walk's torque is another one, and stiffness follows it as damping does.
     """
     if not sensor_delay.doubtful:
-        return [[np.nan_to_num(differentiate(torque, period)[used]) for torque, period, used in torques]]
+        return [lambda one: np.nan_to_num(differentiate(torque(one), one.period))]
     reach = NORMAL95 * sensor_delay.std
-    return [
-        [
-            np.nan_to_num((shifted(torque, period, by) - torque)[used]) / reach
-            for torque, period, used in torques
-        ]
-        for by in (reach, -reach)
-    ]
+
+    def by(time: float, one: Recording) -> Array:
+        return np.nan_to_num(shifted(torque(one), one.period, time) - torque(one)) / reach
+
+    return [partial(by, reach), partial(by, -reach)]
 
 
 def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
@@ -117,9 +107,11 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     return Cause("ends of stances", effect, UNIFORM)
 
 
-def _angle_errors(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> Cause:
+def _angle_errors(tangent: Tangent) -> Cause:
     """What an attitude that wanders may do: anything from nothing to what would leave the torque that is missed."""
-    return Cause("angle errors", slow_attenuation(blocks, fit.equivalent[0], shared_offset=shared), UNIFORM)
+    slope = tangent.fit.equivalent[0]
+    effect = slow_attenuation(tangent.blocks, slope, shared_offset=tangent.shared)
+    return Cause("angle errors", effect, UNIFORM)
 
 
 def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
@@ -152,22 +144,20 @@ def _hidden_memory(fit: AxisFit, *, steps: bool) -> list[Cause]:
     return [Cause("hidden memory", effect, UNIFORM)]
 
 
-def _zeros_of_stances(
-    blocks: Sequence[Block], stances: Sequence[NDArray[np.intp]], shared: bool
-) -> list[Cause]:
+def _zeros_of_stances(tangent: Tangent) -> list[Cause]:
     """What one offset may cost where a foot was lifted and put down again: how far the fit moves when each stance has
     an offset of its own, a bound either way.
 
-    It lands elsewhere, turned a little otherwise, on a floor that is not level. `stances`: runs of samples in which the
-    foot does not leave the floor, of every block's recording.
+    It lands elsewhere, turned a little otherwise, on a floor that is not level.
     """
-    if shared or all(len(np.unique(number)) < FEWEST_STANDS for number in stances):
+    stances = tangent.rows(lambda one: run_numbers(one.contacts[tangent.fit.foot].loaded))
+    if tangent.shared or all(len(np.unique(number)) < FEWEST_STANDS for number in stances):
         return []
     freed = []
-    for block, number in zip(blocks, stances, strict=True):
+    for block, number in zip(tangent.blocks, stances, strict=True):
         own = (number[:, None] == np.unique(number)[1:]).astype(np.float64)
         freed.append(block.with_nuisance(own - own.mean(axis=0)))
-    effect = fit_blocks(freed).values - fit_blocks(blocks).values
+    effect = fit_blocks(freed).values - tangent.least_squares.values
     return [Cause("zeros of stances", effect, UNIFORM)]
 
 
@@ -186,7 +176,7 @@ def _softening(fit: AxisFit) -> list[Cause]:
     return [Cause("softening", effect, UNIFORM)]
 
 
-def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
+def _suspected_hardening(tangent: Tangent) -> list[Cause]:
     """A cube that the model leaves out and the motions show, though no held-out motion asked for it.
 
     It hardly matters to the torque, but the spring's slope in the motions' middle is not its mean slope; about the
@@ -194,6 +184,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     outside, it may be the force sensor that bends, and damping moves by the same share. Empty where they are too small
     to tell the two apart.
     """
+    fit, blocks = tangent.fit, tangent.blocks
     if any("hardening" in term for term in fit.model.terms):
         return []
     size, extended = blocks[0].regressor.shape[1], []
@@ -203,7 +194,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
         cube, square = (reach * ((block.regressor[:, 0] - middle) / reach) ** power for power in (3, 2))
         wider = beside(replace(block, noise=None), cube[:, None])
         extended.append(wider.with_nuisance((square - square.mean())[:, None]))
-    found = fit_blocks(extended, shared_offset=shared)
+    found = fit_blocks(extended, shared_offset=tangent.shared)
     if found.singular:
         return []
     hardening, std = float(found.values[size]), float(found.std[size])
@@ -217,3 +208,13 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
         alike = moved[0] * fit.values[1] / fit.values[0]
         moved[1] = max(moved[1], alike, key=abs)
     return [Cause("hardening", moved / hardening, abs(hardening))]
+
+
+def robot_causes(tangent: Tangent, wrench_gain: float, apart: Apart) -> list[Cause]:
+    """The force sensors' gain, a turned sensor, and recordings that differ: `apart`, as all axes show it."""
+    # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
+    # reads cos ψ of the torque; where it is the IMU that is turned, all of it, and only moving joints tell them apart.
+    turned = 1 - float(np.cos(tangent.fit.turned))
+    gain = float(np.hypot(wrench_gain, turned))
+    causes = [Cause("sensor gain", tangent.fit.values, gain)] if gain else []
+    return causes + (between_walks if tangent.steps else between_recordings)(tangent, apart)

@@ -8,11 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation import Block, effect_of, fit_blocks
+from plantar.estimation import Block, fit_blocks
 from plantar.feet.interval_width.cause import Cause
-from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, recordings_of
+from plantar.feet.regression.regression_data import all_beside
+from plantar.feet.regression.tangent import Tangent
 
 
 class YawZeros(NamedTuple):
@@ -23,27 +22,25 @@ class YawZeros(NamedTuple):
     usual: float
 
 
-def yaw_zeros(fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording]) -> YawZeros | None:
+def yaw_zeros(tangent: Tangent) -> YawZeros | None:
     """Of the recordings of each block; None about pitch, and of feet that step, whose zeros were read in the air."""
-    if fit.axis != "roll" or blocks[0].stances is not None:
+    fit = tangent.fit
+    if fit.axis != "roll" or tangent.steps:
         return None
-    foot, units = fit.foot, np.eye(len(blocks))
-    pitch = [one.bushes[foot].deflection[one.rows(foot), 0] for one in recordings_of(blocks, recordings)]
-    columns = [np.outer(np.sin(angle), own) for angle, own in zip(pitch, units, strict=True)]
+    pitch = tangent.rows(lambda one: one.bushes[fit.foot].deflection[:, 0])
+    columns = [np.outer(np.sin(angle), own) for angle, own in zip(pitch, np.eye(len(pitch)), strict=True)]
     return YawZeros(columns, float(np.sqrt(np.mean(np.square(list(fit.offsets.values()))))))
 
 
-def yaw_torque_zero(
-    zeros: YawZeros, blocks: Sequence[Block], influences: Sequence[Array], shared: bool
-) -> Cause:
+def yaw_torque_zero(zeros: YawZeros, tangent: Tangent) -> Cause:
     """What the zeros may do to the fit: motions that show them smaller than is usual are believed."""
-    count, usual = len(blocks), zeros.usual
-    found, size = fit_blocks(all_beside(blocks, zeros.columns), shared_offset=shared), np.full(count, usual)
+    count, usual = len(tangent.blocks), zeros.usual
+    found, size = tangent.beside(zeros.columns).least_squares, np.full(count, usual)
     if usual and not found.singular:
         told, unsure = found.values[-count:], found.std[-count:]
         keeps = usual**2 / (usual**2 + unsure**2)
         size = np.minimum(np.hypot(keeps * told, np.sqrt(keeps) * unsure), usual)
-    return Cause("yaw torque zero", np.linalg.norm(effect_of(influences, zeros.columns) * size, axis=1), 1.0)
+    return Cause("yaw torque zero", np.linalg.norm(tangent.effect(zeros.columns) * size, axis=1), 1.0)
 
 
 def fit_beside(zeros: YawZeros | None, blocks: Sequence[Block]) -> tuple[Array, Array]:

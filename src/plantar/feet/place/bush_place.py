@@ -15,16 +15,16 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import UNIFORM, Array
-from plantar.estimation import Block, LinearFit, effect_of, fit_blocks, influences_of
+from plantar.estimation import Block, LinearFit
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.estimation.orthonormal import without
-from plantar.feet.place.imu_columns import imu_columns, that_show
+from plantar.feet.place.imu_mount import imu_columns, that_show
 from plantar.feet.place.place_notes import place_notes
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque, place_columns
-from plantar.feet.regression.regression_data import all_beside, recordings_of, tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.partialled_out import Linearised
 
@@ -40,17 +40,16 @@ def about_its_place(
     What the fit has found of the place before is drawn to the robot file anew. A foot that steps has its centre from
     its stances already.
     """
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
-    if blocks[0].stances is not None or not spread.deviations.any():
+    tangent = Tangent.of(fit, recordings, shared)
+    blocks = tangent.blocks
+    if tangent.steps or not spread.deviations.any():
         return fit
-    chosen = recordings_of(blocks, recordings)
-    columns = [centre_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
+    columns = tangent.rows(lambda one: centre_columns(one, fit))
     spreads = np.where(that_show(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
-    late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
-    plain = all_beside(blocks, [own[:, tried] for own in columns])
-    found, noisy, apart = _with_late_encoders(plain, late, shared)
+    late = tangent.rows(lambda one: late_encoder_torque(one, fit)[:, None])
+    found, noisy, apart = _with_late_encoders(tangent.beside([own[:, tried] for own in columns]), late)
     place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
     place[1] = spread.height
     if noisy is not None:
@@ -60,7 +59,7 @@ def about_its_place(
         drawn, left = _drawn(seen, found.covariance[own, own] + np.outer(doubt, doubt), priors)
         place[tried] += drawn[: len(tried)]
         unsure[np.ix_(tried, tried)] = left[: len(tried), : len(tried)]
-    follows = effect_of(influences_of(blocks, shared_offset=shared), columns)
+    follows = tangent.effect(columns)
     moved = -follows @ (place - before)
     covariance, variance = fit.covariance.copy(), {}
     covariance[:size, :size] += follows @ unsure @ follows.T
@@ -90,47 +89,46 @@ def about_its_place(
     )
 
 
-def _with_late_encoders(
-    blocks: Sequence[Block], late: Sequence[Array], shared: bool
-) -> tuple[LinearFit, Array | None, Array]:
-    """The fit of blocks beside encoders that may be read apart from the IMU, what noise takes off its values (None
+def _with_late_encoders(tangent: Tangent, late: Sequence[Array]) -> tuple[LinearFit, Array | None, Array]:
+    """The fit of a tangent beside encoders that may be read apart from the IMU, what noise takes off its values (None
     where motions do not show them), and by how much encoders may be apart [s], (0 or 1,).
 
     Their torque goes with the joints' motion, as horizontal forces do. Where joints alone bend the bush it is damping:
     then it is left out.
     """
-    wider = all_beside(blocks, late)
-    for tried, apart in ((wider, [ENCODERS_LATE]), (blocks, [])):
-        found = fit_blocks(tried, shared_offset=shared)
+    for tried, apart in ((tangent.beside(late), [ENCODERS_LATE]), (tangent, [])):
+        found = tried.least_squares
         # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
-        noisy = attenuation(_with_noise(tried, found), found.values, shared_offset=shared)
+        noisy = attenuation(_with_noise(tried), found.values, shared_offset=tried.shared)
         if not found.singular and noisy is not None:
-            return _with_absorbed_noise(tried, found, shared), noisy, np.array(apart)
+            return _with_absorbed_noise(tried), noisy, np.array(apart)
     return found, None, np.zeros(0)
 
 
-def _with_absorbed_noise(blocks: Sequence[Block], found: LinearFit, shared: bool) -> LinearFit:
-    """The fit of blocks, as unsure as an attitude that wanders makes it: beside so many columns it takes up some."""
+def _with_absorbed_noise(tangent: Tangent) -> LinearFit:
+    """The fit of a tangent, as unsure as an attitude that wanders makes it: beside so many columns it takes up some."""
+    blocks, found = tangent.blocks, tangent.least_squares
     drifts = [np.zeros((len(one.response), 0)) if one.nuisance is None else one.nuisance for one in blocks]
     rows = [
         without(drift, np.column_stack([one.regressor, one.response]))
         for one, drift in zip(blocks, drifts, strict=True)
     ]
     table = np.vstack(rows)
-    linear = Linearised(table[:, :-1], table[:, -1], [len(own) for own in rows], shared)
+    linear = Linearised(table[:, :-1], table[:, -1], [len(own) for own in rows], tangent.shared)
     wide = np.ones(len(found.covariance))
     wide[: linear.size] = lacking(linear, drifts, [one.duration for one in blocks])
     return replace(found, covariance=found.covariance * np.outer(wide, wide))
 
 
-def _with_noise(blocks: Sequence[Block], fit: LinearFit) -> list[Block]:
+def _with_noise(tangent: Tangent) -> list[Block]:
     """The blocks with half of what their fit leaves as noise of the angle: somewhere from none to all of it is.
 
     An attitude that wanders is more of it than the white noise which the blocks know of.
     """
+    fit = tangent.least_squares
     spring = abs(float(fit.values[0])) or 1.0
     noisy = []
-    for block in blocks:
+    for block in tangent.blocks:
         noise = np.zeros(block.regressor.shape[1]) if block.noise is None else block.noise.copy()
         noise[0] += 0.5 * float(np.mean(fit.residuals[block.label] ** 2)) / spring**2
         noisy.append(replace(block, noise=noise))

@@ -1,19 +1,24 @@
-"""What a turn of the IMU in its mount does to one axis of a foot that steps, and what that axis shows of it."""
+"""What a turn of the IMU in its mount does to one axis, and what an axis of a foot that steps shows of it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.estimation import Block, LinearFit
-from plantar.feet.place.imu_columns import imu_columns, that_show
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import late_encoder_torque
-from plantar.feet.regression.regression_data import all_beside, blocks_of, recordings_of
+from plantar.feet.regression.model_columns import memory_path, own_torque, turn_effects
+from plantar.feet.regression.tangent import Tangent
+from plantar.models import BESIDE, KelvinVoigt
+
+TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
+UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
 
 
 class ImuTurn(NamedTuple):
@@ -37,21 +42,19 @@ class Told(NamedTuple):
     information: Array
 
 
-def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> tuple[list[Block], Mask]:
-    """Eq. 6 of one axis with more columns at its end, the torque for each radian of a turn; about which axes (3,).
+def with_turns(tangent: Tangent, mount: float) -> tuple[Tangent, Mask]:
+    """One axis with more columns at its end, the torque for each radian of a turn; about which axes (3,).
 
     mount: deviation of the angles; about an axis about which one adds as good as nothing to the torque there is none.
     Before these stands what late encoders would add, so that none of it passes for a turn: a third of a millisecond had
     passed for two degrees about the axis that the legs swing about.
     """
-    blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    columns = turn_columns(fit, recordings, blocks)
-    shown = that_show(blocks, columns, np.full(3, mount))
-    chosen = recordings_of(blocks, recordings)
-    late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
+    columns = tangent.rows(lambda one: imu_columns(one, tangent.fit))
+    shown = that_show(tangent.blocks, columns, np.full(3, mount))
+    late = tangent.rows(lambda one: late_encoder_torque(one, tangent.fit)[:, None])
     if any(column.any() for column in late):
-        blocks = all_beside(blocks, late)
-    return all_beside(blocks, [own[:, shown] for own in columns]), shown
+        tangent = tangent.beside(late)
+    return tangent.beside([own[:, shown] for own in columns]), shown
 
 
 def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
@@ -65,6 +68,25 @@ def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
     return [Told(angles, information)]
 
 
-def turn_columns(fit: AxisFit, recordings: Sequence[Recording], blocks: Sequence[Block]) -> list[Array]:
-    """Torque for each radian of a turn at the rows of each block, (n, 3)."""
-    return [imu_columns(one, fit)[one.rows(fit.foot)] for one in recordings_of(blocks, recordings)]
+def imu_columns(recording: Recording, fit: AxisFit) -> Array:
+    """Torque (N, 3) for each radian by which the IMU is turned about its axes, under a fit's model."""
+
+    effects = turn_effects(recording, fit.foot, fit.axis)
+    linear = np.einsum("nrk,r->nk", effects, fit.values[: len(BESIDE)])
+    if isinstance(fit.model, KelvinVoigt):
+        return np.asarray(linear)
+    path, steps = memory_path(recording, fit), TURN_STEP * np.moveaxis(effects, 0, 2)
+    turned = [
+        replace(path, deflection=path.deflection + angle, rate=path.rate + rate)
+        for angle, rate in np.concatenate([steps, -steps], axis=1).swapaxes(0, 1)
+    ]
+    own = own_torque(recording, fit, turned, fit.shape[None, :])
+    return np.asarray(linear + (own[:, :3] - own[:, 3:]) / (2 * TURN_STEP))
+
+
+def that_show(blocks: Sequence[Block], columns: Sequence[Array], spreads: Array) -> Mask:
+    """Which columns, by one deviation each, add anything to the torque that no offset takes up, (k,)."""
+    moved = [own - own.mean(axis=0) for own in columns]
+    torque = np.concatenate([block.response - block.response.mean() for block in blocks])
+    added = spreads * np.sqrt(np.mean(np.concatenate(moved) ** 2, axis=0))
+    return np.asarray(added > UNSEEN * np.sqrt(np.mean(torque**2)))

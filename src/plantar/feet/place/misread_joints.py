@@ -10,17 +10,16 @@ an IMU that tilts by 2 mrad for each m/s² makes K 4 % too large and C up to 27 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
 from plantar.conventions import ROTATIONAL_AXES, SURE, Array, cross
-from plantar.estimation import Block, fit_blocks, least_left
+from plantar.estimation import least_left
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, recordings_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate
@@ -34,8 +33,8 @@ ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is,
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
 ALL_LATE = 0.25  # s, likewise of all joints, which are late together where it is the IMU that is early
-# Of an interval, by which play moves its number: a joint stays behind only after it has turned far enough, so that the
-# sign of its rate gives back half of what is missing.
+# Of an interval, by which play of a joint, or hysteresis of a sensor, moves its number: both stay behind only after a
+# turn is far enough, so that the sign of a rate gives back half of what is missing at most.
 PART = 0.5
 SOFT = 0.1  # of a joint's fast rate, within which its sign changes: behind a filter it is no step
 FAST = 98  # percentile
@@ -66,24 +65,22 @@ class Misread(NamedTuple):
         return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
 
 
-def misread_joint_notes(
-    robot: RobotModel, recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
-) -> list[Note]:
+def misread_joint_notes(robot: RobotModel, tangent: Tangent, wide: AxisFit) -> list[Note]:
     """A warning where the torque goes far better with a joint, or an IMU, that is read otherwise, and that moves
     stiffness or damping out of the interval of `wide`.
 
-    recordings: with all of their logs; tangents: of the same, as they are fitted.
+    tangent: with all of the recordings' logs.
     """
-    alone = fit_blocks(tangents, shared_offset=shared)
-    each = [_columns(robot, one, wide) for one in recordings_of(tangents, recordings)]
+    alone = tangent.least_squares
+    each = [_columns(robot, one, wide) for one in tangent.recordings]
     told = [np.column_stack([*columns.values()]) for columns in each]
     needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in each[0]])
-    left = needed * least_left(tangents, told) / alone.squares
+    left = needed * least_left(tangent.blocks, told) / alone.squares
     if left.min() > 1:
         return []
     close = {which: column for column, which in enumerate(each[0]) if left[column] <= ALIKE}
     fits = (
-        _misread(*which, all_beside(tangents, [own[:, [column]] for own in told]), wide, alone.values, shared)
+        _misread(*which, tangent.beside([own[:, [column]] for own in told]), wide, alone.values)
         for which, column in close.items()
     )
     found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
@@ -101,11 +98,9 @@ def misread_joint_notes(
     return [Note(OUT_OF_TIME if together else MISREAD, "warning", text)]
 
 
-def _misread(
-    joint: str, kind: str, wider: Sequence[Block], wide: AxisFit, usual: Array, shared: bool
-) -> Misread | None:
-    """A joint that is surely misread, by blocks with its column as the last; usual: (k,), the values without it."""
-    fit = fit_blocks(wider, shared_offset=shared)
+def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array) -> Misread | None:
+    """A joint that is surely misread, by a tangent with its column as the last; usual: (k,), the values without it."""
+    fit = wider.least_squares
     size, std = float(fit.values[-1]), float(fit.std[-1])
     most = {"gain": GAIN, "late": LATE, "together": ALL_LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint

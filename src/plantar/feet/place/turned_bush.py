@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, SURE, Axis
-from plantar.estimation import Block, fit_blocks
+from plantar.estimation import Block
 from plantar.feet.place.place_notes import BUSH_WORTH_SAYING, STEPS_WORTH_SAYING, turned_bush
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import others_torque
-from plantar.feet.regression.regression_data import all_beside, recordings_of, tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 
 STEPS_LEAVE = 0.75  # of the squares that the model of one axis leaves
@@ -40,17 +40,14 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
 
     With it the share that it leaves of what the model leaves, in squares.
     """
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
-    if blocks[0].stances is None:
+    tangent = Tangent.of(fit, recordings, shared)
+    if not tangent.steps:
         return None
-    blocks = [_without_the_other(block) for block in blocks]
-    chosen = recordings_of(blocks, recordings)
-    other = [others_torque(one, fit.foot, fit.axis)[one.rows(fit.foot), None] for one in chosen]
-    wider = all_beside(blocks, other)
-    alone, found = (fit_blocks(each, shared_offset=shared) for each in (blocks, wider))
-    size = blocks[0].regressor.shape[1]
-    sure = not found.singular and abs(found.values[size]) > SURE * found.std[size]
-    return (float(found.values[size]) if sure else 0.0), found.squares / max(
+    tangent = replace(tangent, blocks=[_without_the_other(block) for block in tangent.blocks])
+    other = tangent.rows(lambda one: others_torque(one, fit.foot, fit.axis)[:, None])
+    alone, found = tangent.least_squares, tangent.beside(other).least_squares
+    sure = not found.singular and abs(found.values[-1]) > SURE * found.std[-1]
+    return (float(found.values[-1]) if sure else 0.0), found.squares / max(
         alone.squares, np.finfo(float).tiny
     )
 

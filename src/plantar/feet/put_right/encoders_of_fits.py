@@ -14,14 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import SHOWN
-from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
-from plantar.feet.interval_width.encoder_delay import with_late_encoders
+from plantar.feet.interval_width.sensor_causes import with_late_encoders
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording, has_steps
 from plantar.feet.regression.load_torque import ENCODERS_APART
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.sensors.delays.refined_delays import APART, LEAST_DISTINCT
 
 # s: of K/C = 25 1/s it is a thousandth of the damping, and where joints turn ten times as fast as the bush a hundredth.
@@ -92,17 +91,16 @@ def encoders_shown(feet: Mapping[str, FittedFoot], told: Late, taken: float) -> 
     """
     values, variances = list[float](), list[float]()
     for one in feet.values():
-        shared = one.ready.settings.offset == "shared"
+        shared = one.ready.settings.shared
         for axis, fit in one.fits.items():
             with gives_up(axis, one.given_up):
-                blocks = tangent_blocks(one.thin.fitted, fit, drift=not shared)
-                wider = with_late_encoders(fit, blocks, one.thin.fitted)
+                wider = with_late_encoders(Tangent.of(fit, one.thin.fitted, shared))
                 if wider is None:
                     continue
-                found = fit_blocks(wider, shared_offset=shared)
+                found = wider.least_squares
                 if not found.singular:
                     values.append(taken + float(found.values[-1]))
-                    variances.append(float(found.std[-1]) ** 2 + _missed(wider, shared) ** 2)
+                    variances.append(float(found.std[-1]) ** 2 + _missed(wider) ** 2)
     if not values:
         return None
     late, known = np.array(values), 1.0 / np.array(variances)
@@ -114,8 +112,8 @@ def encoders_shown(feet: Mapping[str, FittedFoot], told: Late, taken: float) -> 
     return found_late if abs(found_late.value) < ENCODERS_APART else None
 
 
-def _missed(blocks: Sequence[Block], shared: bool) -> float:
+def _missed(tangent: Tangent) -> float:
     """How late encoders look [s], the last of what is fitted, where the law misses MISSED_BY_LAW of the torque."""
-    torque = np.concatenate([block.response - block.response.mean() for block in blocks])
-    influence = np.concatenate([own[-1] for own in influences_of(blocks, shared_offset=shared)])
+    torque = np.concatenate([block.response - block.response.mean() for block in tangent.blocks])
+    influence = np.concatenate([own[-1] for own in tangent.influences])
     return MISSED_BY_LAW * float(np.linalg.norm(torque) * np.linalg.norm(influence))

@@ -12,12 +12,12 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import SHOWN
-from plantar.estimation import fit_blocks
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.place.imu_mount import ImuTurn, Told, turn_told, with_turns
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
+from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note, Severity
 
 FAR = 3.0  # deviations of the robot file's, beyond which the mount is worth a look
@@ -33,8 +33,8 @@ def turn_shown(feet: Mapping[str, FittedFoot], found: ImuTurn, mount: float) -> 
         for axis, fit in one.fits.items():
             if axis not in one.given_up and any(each.stances[foot] is not None for each in one.thin.fitted):
                 with gives_up(axis, one.given_up):
-                    blocks, about = with_turns(fit, one.thin.fitted, mount)
-                    shown += turn_told(fit_blocks(blocks), about)
+                    tangent, about = with_turns(Tangent.of(fit, one.thin.fitted, False), mount)
+                    shown += turn_told(tangent.least_squares, about)
     if not shown or not mount:
         return None
     before, known = np.array(found.angles), np.eye(3) / mount**2

@@ -40,7 +40,7 @@ from plantar.model_selection.variable_projection import SHAPE_STEP
 # file's and of the slide under load, turned or leaning by a degree, as a mount that nobody measured, and crosstalk as
 # the robot file has it unless told.
 PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02, 0.004])
-FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
+FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit, or to be scored
 
 
 def blocks_of(

@@ -10,13 +10,12 @@ from typing import Final, Literal
 import numpy as np
 from scipy.special import stdtrit
 
-from plantar.conventions import NORMAL95, Array
+from plantar.conventions import MONTH, NORMAL95, YEAR, Array
 from plantar.fleet.statistics.control_chart import Limits, limits_of, watch
-from plantar.fleet.statistics.trend import FEWEST, MONTH, Trend, trend_of
+from plantar.fleet.statistics.trend import FEWEST, Trend, trend_of
 
 Kind = Literal["step", "trend", "outlier"]
 
-YEAR: Final = 365.25  # days
 KINDS: Final = 3  # that share the false alarms
 WINDOW: Final = 3 * MONTH  # days that a trend is looked for in, once a month
 SHORTEST: Final = MONTH  # days: in less, a trend and a step are one
@@ -173,7 +172,7 @@ def _trends(
     rate: float,
 ) -> list[Change]:
     """A look at the last three months each month, behind the last step that was seen by then."""
-    probability = min(rate / KINDS / (YEAR / MONTH), LARGEST_SHARE)
+    probability = min(rate / KINDS / 12, LARGEST_SHARE)
     found = []
     for tick in np.arange(time[0] + MONTH, time[-1] + MONTH / 2, MONTH):
         end = int(np.searchsorted(time, tick, side="right"))

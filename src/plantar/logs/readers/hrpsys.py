@@ -15,7 +15,7 @@ from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
-from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.ports import PORT_LIMIT, log_of_ports
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
@@ -23,7 +23,6 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-PORT_LIMIT = 500  # files beside each other
 
 # End of a port's name -> role; {imu} is the robot's IMU, {left} and {right} its force sensors.
 USUAL: tuple[tuple[str, str], ...] = (

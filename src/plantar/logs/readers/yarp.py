@@ -17,7 +17,7 @@ from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
-from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.ports import PORT_LIMIT, log_of_ports
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
@@ -25,7 +25,6 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-PORT_LIMIT = 500  # of a recording's ports that are read
 DEPTH = 5  # directories below the one given
 INFO_LIMIT = 4096  # bytes of info.log that are looked at
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import gzip
 import zlib
 from collections import deque
 from collections.abc import Iterator
@@ -137,32 +138,13 @@ class _Text:
         self.cut: str | None = None
 
     def blocks(self) -> Iterator[bytes]:
+        packed = self._path.name.lower().endswith(".gz")
         try:
-            with open(self._path, "rb") as handle:
-                packed = iter(lambda: handle.read(BLOCK), b"")
-                yield from self._inflated(packed) if self._path.name.lower().endswith(".gz") else packed
+            with gzip.open(self._path) if packed else open(self._path, "rb") as handle:
+                yield from iter(lambda: handle.read1(BLOCK), b"")
+        except EOFError:
+            self.cut = "is a cut gzip file; what is whole was read"
+        except (zlib.error, gzip.BadGzipFile) as error:
+            raise LogError(f"is not a readable gzip file: {error}", path=self._path) from error
         except OSError as error:
             raise LogError(f"cannot be read: {error.strerror}", path=self._path) from error
-        except zlib.error as error:
-            raise LogError(f"is not a readable gzip file: {error}", path=self._path) from error
-
-    def _inflated(self, packed: Iterator[bytes]) -> Iterator[bytes]:
-        """One gzip stream after another; zeros between them are padding."""
-        inflater = zlib.decompressobj(wbits=31)
-        begun = False
-        for data in packed:
-            while data:
-                if not begun:
-                    data = data.lstrip(b"\0")
-                    begun = bool(data)
-                if text := inflater.decompress(data, BLOCK):
-                    yield text
-                data = inflater.unused_data if inflater.eof else inflater.unconsumed_tail
-                if inflater.eof:
-                    inflater, begun = zlib.decompressobj(wbits=31), False
-        if begun:
-            # Some text may still be inside the inflater where the file ends.
-            if text := inflater.flush():
-                yield text
-            if not inflater.eof:
-                self.cut = "is a cut gzip file; what is whole was read"

@@ -9,8 +9,8 @@ from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.load_errors import TURN
-from plantar.sensors.moment_errors import turn_columns
-from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.moments.sensor_errors import turn_columns
 
 TURNED = "wrench_turned"
 LEAST = 0.05  # rad: damping is off by some percent; one that is known less well may be chance

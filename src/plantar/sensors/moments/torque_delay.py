@@ -7,7 +7,7 @@ import numpy as np
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES
 from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
-from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
 
 TORQUES_LATE = "torques_late"
 LEAST = 0.005  # s: damping is off by some percent of what feet have; simulated robots without this fault show 0.0005

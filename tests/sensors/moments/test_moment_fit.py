@@ -8,9 +8,10 @@ import pytest
 from moments import fit_moments
 from plantar.conventions import GRAVITY, Array
 from plantar.feet.prepare_log import checked
-from plantar.sensors.moment_balance import torque_gains
-from plantar.sensors.moment_errors import PARTS, MomentErrors, moment_errors, moment_rows
-from plantar.sensors.moment_fit import solved
+from plantar.sensors.moments.law_rows import law_rows
+from plantar.sensors.moments.moment_errors import PARTS, MomentErrors, RowProducts, row_products, weighed
+from plantar.sensors.moments.moment_fit import solved
+from plantar.sensors.moments.torque_gains import torque_gains
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.filters import low_pass
 from plantar.twin import PAPER, play_all
@@ -18,6 +19,7 @@ from plantar.twin.robots import hrp2
 from twin_samples import planned_part, walked
 
 COLUMNS, SAMPLES, PERIOD = 24, 400, 0.1  # as of a log of 40 s below 2 Hz
+PRIOR = np.full(COLUMNS, 3.0)
 NONE = np.zeros(0)
 
 
@@ -36,7 +38,8 @@ def log_of(columns: Array, missing: Array, zeros: Array = NONE) -> MomentErrors:
     both = np.concatenate([missing[None], columns])
     rows = np.array([both, *(np.zeros((5, *both.shape)) + 1e-9 * both)])
     products = np.array([part @ part.transpose(0, 2, 1) for part in np.array_split(rows, PARTS, axis=2)])
-    return MomentErrors(products.transpose(1, 0, 2, 3), products.sum(axis=0) / SAMPLES, 0.4, zeros)
+    rows = RowProducts(products.transpose(1, 0, 2, 3), products.sum(axis=0) / SAMPLES, 0.4, zeros)
+    return weighed(rows, PRIOR)
 
 
 def test_each_log_has_zeros_of_its_own() -> None:
@@ -47,22 +50,22 @@ def test_each_log_has_zeros_of_its_own() -> None:
         zero = columns[0] + swaying(random)[0]
         noise = 0.01 * low_pass(random.normal(size=SAMPLES), PERIOD, 1.0)
         logs.append(log_of(np.vstack([columns, zero]), size * zero + noise, np.array([10.0])))
-    assert abs(solved(logs, np.full(COLUMNS, 3.0))[0][0]) < 0.05
+    assert abs(solved(logs, PRIOR)[0][0]) < 0.05
 
 
 def test_what_a_wrong_urdf_does_is_told_from_sensors_errors_and_held_in_deviations() -> None:
     """All logs share a link that is as wrong as it may be, as they share a sensor's gain."""
     random = np.random.default_rng(0)
-    columns, prior = swaying(random), np.full(COLUMNS, 3.0)
+    columns = swaying(random)
     links = 0.7 * columns[:4] + swaying(random)[:4]
     told, without = [], []
     for _ in range(40):
         size = random.standard_normal(4)
         noise = 0.01 * low_pass(random.normal(size=(SAMPLES, 2)), PERIOD, 1.0).T
         logs = [log_of(np.vstack([columns, links]), size @ links + one) for one in noise]
-        values, parts = solved(logs, prior)
+        values, parts = solved(logs, PRIOR)
         told.append(values / np.sqrt(np.diag(sum(part.covariance for part in parts))))
-        without.append([values[0], solved([log_of(columns, size @ links + noise[0])], prior).values[0]])
+        without.append([values[0], solved([log_of(columns, size @ links + noise[0])], PRIOR).values[0]])
     assert 0.3 < np.sqrt(np.mean(np.square(told))) < 1.3
     with_links, alone = np.sqrt(np.mean(np.square(without), axis=0))
     assert with_links < 0.5 * alone
@@ -73,17 +76,17 @@ def test_what_no_column_explains_counts_once_a_second() -> None:
     robot, log = hrp2.robot(), checked(hrp2.robot(), walked())
     [residual] = newton_euler_residuals(robot, log)
     for steps, period in ((True, 0.05), (False, 0.1)):
-        assert moment_errors(robot, residual, steps).share == pytest.approx(period, rel=1e-6)
+        assert row_products(robot, residual, steps).share == pytest.approx(period, rel=1e-6)
 
 
 def test_deviations_are_as_large_as_errors_where_many_columns_follow_few_frequencies() -> None:
     """What such columns leave of the noise at those frequencies is a fraction of it: deviations from it were halved."""
     random = np.random.default_rng(0)
-    columns, prior = swaying(random), np.full(COLUMNS, 3.0)
+    columns = swaying(random)
     told = []
     for _ in range(60):
         noise = low_pass(random.normal(size=SAMPLES), PERIOD, 1.0)
-        values, parts = solved([log_of(columns, noise)], prior)
+        values, parts = solved([log_of(columns, noise)], PRIOR)
         told.append(values / np.sqrt(np.diag(parts[0].covariance + parts[1].covariance)))
     assert 0.6 < np.sqrt(np.mean(np.square(told))) < 1.2
 
@@ -94,7 +97,7 @@ def test_a_log_in_which_a_hand_steadies_the_robot_says_little_beside_one_without
     alone, held = swaying(random), swaying(random)
     noise = [0.01 * low_pass(random.normal(size=SAMPLES), PERIOD, 1.0) for _ in range(2)]
     logs = [log_of(alone, noise[0]), log_of(held, noise[1] + 0.3 * held[0] + 0.3 * swaying(random)[0])]
-    values, parts = solved(logs, np.full(COLUMNS, 3.0))
+    values, parts = solved(logs, PRIOR)
     assert abs(values[0]) < 0.01
     assert np.sqrt(sum(part.covariance[0, 0] for part in parts)) < 0.05
 
@@ -108,7 +111,7 @@ def test_a_walk_of_which_a_part_is_used_misses_what_its_columns_say() -> None:
     for each in (log, more):
         [residual] = newton_euler_residuals(robot, each)
         assert residual.kept.stop - residual.kept.start < len(log)
-        signals = [row.signals.T for row in moment_rows(robot, residual, True)]
+        signals = [row.signals.T for row in law_rows(robot, residual, True)]
         found.append((residual.kept, np.array(signals)))
     (kept, before), (same, after) = found
     assert kept == same

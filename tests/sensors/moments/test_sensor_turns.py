@@ -13,13 +13,13 @@ from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import turn_columns
-from plantar.sensors.moment_fit import MomentFit, Part
-from plantar.sensors.newton_euler import newton_euler_residuals
-from plantar.sensors.sensor_turns import (
+from plantar.sensors.moments.moment_fit import MomentFit, Part
+from plantar.sensors.moments.sensor_errors import turn_columns
+from plantar.sensors.moments.sensor_turns import (
     TURNED,
     sensor_turn_notes,
 )
+from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.twin.robots import hrp2
 from twin_samples import walked
 

@@ -14,9 +14,11 @@ from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
-from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
-from plantar.sensors.moment_errors import moment_errors, moment_rows, prior_deviations
-from plantar.sensors.moment_fit import MomentFit, Part, solved
+from plantar.sensors.moments.law_rows import law_rows
+from plantar.sensors.moments.moment_errors import moment_errors
+from plantar.sensors.moments.moment_fit import MomentFit, Part, solved
+from plantar.sensors.moments.sensor_errors import prior_deviations
+from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
@@ -91,15 +93,15 @@ def test_without_an_accelerometer_no_acceleration_enters(twin: RobotModel, sweep
     """Moments about the centre of mass: three rows, which whatever the root may do leaves as they are."""
     [residual] = newton_euler_residuals(twin, without(sweep, "linear_acceleration"))
     still = replace(twin, uncertainty=EXACT)  # of another URDF the centre of mass is elsewhere
-    before = [row.signals for row in moment_rows(still, residual, False)]
+    before = [row.signals for row in law_rows(still, residual, False)]
     signals = residual.signals
     push = np.sin(np.arange(len(signals.proper)) * signals.period)[:, None] * [1.0, 2.0, -0.5]
     pushed = replace(residual, signals=replace(signals, proper=signals.proper + push))
-    after = [row.signals for row in moment_rows(still, pushed, False)]
+    after = [row.signals for row in law_rows(still, pushed, False)]
     assert len(before) == 3
     np.testing.assert_allclose(after, before, atol=1e-9 * np.abs(before).max())
     accelerated = replace(residual, signals=replace(signals, by_encoders=None))
-    assert len([*moment_rows(still, accelerated, False)]) == 6
+    assert len([*law_rows(still, accelerated, False)]) == 6
 
 
 @pytest.mark.parametrize(

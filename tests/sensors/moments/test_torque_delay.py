@@ -13,8 +13,8 @@ from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.delays.torque_delay import TORQUES_LATE, torque_delay_notes
-from plantar.sensors.moment_fit import MomentFit, Part
+from plantar.sensors.moments.moment_fit import MomentFit, Part
+from plantar.sensors.moments.torque_delay import TORQUES_LATE, torque_delay_notes
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.resampling import shifted
 from plantar.twin.robots import hrp2

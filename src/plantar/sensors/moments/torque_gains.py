@@ -16,7 +16,7 @@ from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
 
 APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so well is judged by itself
 ALSO = 0.5  # of the share about one axis, from which on the other axis' share is nearer to it than to none

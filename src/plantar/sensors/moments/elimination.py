@@ -1,0 +1,51 @@
+"""Least squares from products of columns with each other, of which some are solved for beside the others."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import NamedTuple
+
+import numpy as np
+
+from plantar.conventions import Array
+
+
+class Beside(NamedTuple):
+    """Products of what is missing and its columns beside other columns, which are solved for: `products` (parts,
+    k + 1, k + 1), and `shares` (others, k + 1), by which each of the others is taken off what stands beside it."""
+
+    products: Array
+    shares: Array
+
+
+def beside(products: Array, deviations: Array) -> Beside:
+    """Beside the last columns of `products` (parts, k + 1 + others, ...), of which coefficients are drawn towards
+    nothing with `deviations` (others,)."""
+    kept = products.shape[-1] - len(deviations)
+    own, across, others = products[:, :kept, :kept], products[:, kept:, :kept], products[:, kept:, kept:]
+    known = np.diag(deviations**-2.0)
+    share = np.linalg.solve(_positive(others.sum(axis=0)) + known, across.sum(axis=0))
+    taken = share.T @ across
+    # What the others' own priors say against a share of them belongs to all parts alike.
+    without = own - taken - taken.mT + share.T @ (others @ share) + share.T @ known @ share / len(products)
+    return Beside(without, -share)
+
+
+def coefficients(products: Array, deviations: Array) -> Array:
+    """The solution (k,) of products (k + 1, k + 1) of what is missing and its columns, drawn towards nothing with
+    `deviations` (k,)."""
+    return np.asarray(np.linalg.solve(information(products, deviations), products[1:, 0]))
+
+
+def information(products: Array, deviations: Array) -> Array:
+    """What products (k + 1, k + 1) and `deviations` (k,) say of the coefficients, (k, k): inverse, their covariance."""
+    return _positive(products[1:, 1:]) + np.diag(deviations**-2.0)
+
+
+def _positive(products: Array) -> Array:
+    """The nearest products (k, k) that real columns can have: noise taken off may leave less than nothing."""
+    with suppress(np.linalg.LinAlgError):  # raised where it does
+        np.linalg.cholesky(products)
+        return products
+    sizes, vectors = np.linalg.eigh(products)
+    return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
