@@ -56,7 +56,8 @@ FootEstimate after(double seconds, double rate_hz, bool always, double first_sta
     const double torque =
         stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
     const double seen = p + attitude_noise * normal(random);
-    const double attitude[4] = {std::cos(seen / 2), noise, -std::sin(seen / 2), noise}, gyroscope[3] = {noise, -rate, noise};
+    const double attitude[4] = {std::cos(seen / 2), noise, -std::sin(seen / 2), noise};
+    const double gyroscope[3] = {noise, -rate, noise};
     std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
                                              {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};
     if (t >= missing[0] && t < missing[1]) wrench[0].fill(std::nan(""));

@@ -15,8 +15,8 @@ void few_groups_are_as_sure_as_student_says() {
   check::near(half_of_rows(12, 2.0, 3.0), 1.96 * 3.0, 1e-12, "nor is anything surer than noise leaves it");
 }
 
-// Weights are one over the variances, 4 to 1: the mean lies a fifth of the way from the surer one, and their scatter about
-// it is two fifths of what they are apart.
+// Weights are one over the variances, 4 to 1: the mean lies a fifth of the way from the surer one, and their scatter
+// about it is two fifths of what they are apart.
 void two_axes_weigh_by_what_they_know() {
   const Parameter sure = {1e-5, 1e-6, 2.1e-6}, unsure = {3e-5, 2e-6, 4.2e-6};
   const double value = 1.4e-5, beside = std::hypot(0.8e-5, 0.07 * value);

@@ -22,8 +22,8 @@ inline double half_of_rows(int groups, double grouped, double white) noexcept {
 }
 
 // The compliance of a foot [m/N], beside what was `told` of it. Both axes have learnt it, each with a prior of its own,
-// from torques of the same load. The horizontal forces' torque is hundredths of a newton metre: there the axes differ by
-// more than each knows of itself, and both by what no model has.
+// from torques of the same load. The horizontal forces' torque is hundredths of a newton metre: there the axes differ
+// by more than each knows of itself, and both by what no model has.
 inline Parameter learnt_by_both(const Parameter& pitch, const Parameter& roll, double told) noexcept {
   const double p = pitch.std * pitch.std, r = roll.std * roll.std, share = r > 0.0 ? r / (p + r) : 0.0;
   const double value = share * pitch.value + (1.0 - share) * roll.value;
