@@ -72,9 +72,33 @@ void white_noise_leaves_what_columns_cannot_tell_from_it() {
   }
 }
 
+// Noise of a force that reaches the torque through the sensor's place is taken off each group as much as it is there:
+// groups that differ in it alone do not differ in their values.
+void noise_that_differs_between_groups_is_no_difference() {
+  RegressionPrior prior = {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0, 0.1},
+                           {}, {6e4, 6e4, 600.0, 1e-9, 0.1, 1e-12, 1e-9, 1e-9}, 0.0, 1.0, 0.0, 0.0, 0.05, 0.0, ROW};
+  AxisRegression axis(prior);
+  for (int g = 0; g < GROUPS; ++g) {
+    const double size = g % 2 == 0 ? 0.0 : 2.0;
+    for (int i = 0; i < ROWS; ++i) {
+      const double t = ROW * (ROWS * g + i), turn = 2.0 * std::numbers::pi * (i + 0.5) / ROWS;
+      const double angle = ANGLE * std::cos(turn), rate = 0.03 * std::sin(turn), noise = i % 2 == 0 ? size : -size;
+      RegressionRow row = {{1.0, t}, {angle, rate, 0.0, 0.0, 10.0 * std::cos(3.0 * turn) + noise}, 0.0, {}};
+      row.torque = STIFF * angle + DAMPS * rate + prior.horizontal_arm * noise;
+      row.noise[OF_HORIZONTAL] = size * size;
+      axis.add(row, ROW), axis.work();
+    }
+    axis.close();
+  }
+  for (int i = 0; i < 4; ++i) axis.work();
+  check::near(axis.values().value[ABOVE], 0.0, 5e-5, "the place is where it was told to be");
+  check::near(axis.values().grouped[ABOVE], 0.0, 5e-5, "and all groups say so");
+}
+
 void run() {
   groups_that_differ_leave_their_standard_error();
   white_noise_leaves_what_columns_cannot_tell_from_it();
+  noise_that_differs_between_groups_is_no_difference();
 }
 
 const check::Listed listed(run);

@@ -182,6 +182,10 @@ void a_joint_is_stuck_where_others_go_farther_than_they_ever_did() {
   check::that(!slow.stuck && !slow.joint.doubtful(), "it has stood for nearly so long, and moved again");
   slow.go(1.0, 0.4 * LEFT_BEHIND, true);
   check::that(slow.stuck, "but not for twice as long");
+  Pair anew;
+  anew.go(1.0, 0.02, false).go(1.0, 0.8 * LEFT_BEHIND, true), anew.joint.restart(), anew.twin.restart();
+  anew.go(0.1, 0.02, false).go(1.0, 1.4 * LEFT_BEHIND, true);
+  check::that(anew.stuck, "what stood before time began says nothing");
   Pair doubt;
   doubt.go(1.0, 0.02, false).go(1.0, 2.0 * LEAST_WAY, true);
   check::that(doubt.joint.doubtful() && !doubt.stuck, "less is a doubt");

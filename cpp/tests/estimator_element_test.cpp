@@ -38,7 +38,8 @@ EstimatorModel model(bool always, double told_std) {
 // missing: from when to when its force sensor says nothing.
 template <class Angle, class Load>
 FootEstimate after(double seconds, double rate_hz, bool always, double first_state, Angle angle, Load load,
-                   double told_std = 1e-6, double torque_noise = 0.0, std::array<double, 2> missing = {}) {
+                   double told_std = 1e-6, double torque_noise = 0.0, std::array<double, 2> missing = {},
+                   double attitude_noise = 0.0) {
   FootEstimator estimator(model(always, told_std));
   std::mt19937 random(0);
   std::normal_distribution<double> normal;
@@ -54,7 +55,9 @@ FootEstimate after(double seconds, double rate_hz, bool always, double first_sta
     const double carried = load(t), stands = carried > 0.1 * WEIGHT ? 1.0 : 0.0;
     const double torque =
         stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
-    const double attitude[4] = {std::cos(p / 2), noise, -std::sin(p / 2), noise}, gyroscope[3] = {noise, -rate, noise};
+    const double seen = p + attitude_noise * normal(random);
+    const double attitude[4] = {std::cos(seen / 2), noise, -std::sin(seen / 2), noise};
+    const double gyroscope[3] = {noise, -rate, noise};
     std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
                                              {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};
     if (t >= missing[0] && t < missing[1]) wrench[0].fill(std::nan(""));
@@ -181,8 +184,16 @@ void a_pause_is_no_lift() {
   check::near(found.pitch.stiffness.value, STIFFNESS, 0.01 * STIFFNESS, "stiffness behind a pause");
 }
 
+// The gyroscope says how an element turns: an attitude's noise would drive it to and fro.
+void is_not_moved_by_an_attitudes_noise() {
+  const auto swings = [](double t) { return 0.02 * std::sin(2.0 * t); };
+  const FootEstimate found = after(30.0, 200.0, false, 0.0, swings, all, 1e-6, 0.0, {}, 1e-3);
+  check::near(found.pitch.stiffness.value, STIFFNESS, 0.01 * STIFFNESS, "stiffness under a noisy attitude");
+}
+
 void run() {
   a_pause_is_no_lift();
+  is_not_moved_by_an_attitudes_noise();
   is_followed_through_the_air();
   follows_what_turns_between_samples();
   knows_nothing_of_a_foot_that_always_stands();

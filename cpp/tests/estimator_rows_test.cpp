@@ -1,4 +1,5 @@
 // Which ticks of a foot that steps its regressions are given: none from before it stood, none on its edge.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -76,9 +77,34 @@ void what_ends_on_its_edge_is_no_row() {
   }
 }
 
+// What is read in an impact is in no row: neither in the mean of a tick and the one before, nor while the delay's lines
+// still hold it.
+void what_is_read_in_an_impact_is_in_no_row() {
+  for (const double delay : {0.0, -0.02}) {
+    std::vector<bool> struck(TICKS, false);
+    const auto stiffness = [&](double wrong, bool look) {
+      FootEstimator estimator(two_feet(delay));
+      FootEstimate last;
+      for (int i = 0; i < TICKS; ++i) {
+        const double t = i / HZ;
+        Sensors sensors(t, delay);
+        if (i % 800 < 40 && i > 2000) sensors.wrench[0][0] += i % 2 ? 60.0 : -60.0;
+        if (struck[i]) sensors.wrench[0][4] += wrong;
+        last = estimator.step(sensors.reading(t))[0];
+        if (look) struck[i] = last.flags & IMPACT;
+      }
+      return last.pitch.stiffness.value;
+    };
+    const double clean = stiffness(0.0, true);
+    check::that(std::count(struck.begin(), struck.end(), true) > 500, "many ticks in impacts");
+    check::near(stiffness(12.0, false), clean, 1e-9 * clean, "a torque that is wrong in all of them");
+  }
+}
+
 void run() {
   what_is_outside_a_stance_is_in_no_row();
   what_ends_on_its_edge_is_no_row();
+  what_is_read_in_an_impact_is_in_no_row();
 }
 
 const check::Listed listed(run);

@@ -64,6 +64,11 @@ void run() {
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= N; ++j) check::near(product(less, i, j), product(wanted, i, j), 1e-9, "a row taken off");
 
+  RootTriangle<N> most = all;
+  double huge[N + 1] = {1e3, 0.0, 0.0, 0.0};
+  most.remove(huge, 0.75);
+  check::near(product(most, 0, 0), 0.25 * product(all, 0, 0), 1e-9, "of a square no more than its share goes");
+
   RootTriangle<N> faded = all;
   faded.scale(0.5);
   for (int i = 0; i < N; ++i)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from plantar.campaign import scene
 from plantar.cli import compare, design, select
 from plantar.comparison import compare as comparison
-from plantar.design import story
+from plantar.design import paper_motions, story
+from plantar.design.paper_motions import PaperMotions
 from plantar.design.writing import outputs
+from plantar.logs.readers import open_log
 from plantar.motions.select_motions import Choice, Selection
 
 KEYS = [("left", "pitch", "stiffness"), ("left", "pitch", "damping")]
+WIDTHS = [("left", axis, term) for axis in ("pitch", "roll") for term in ("stiffness", "damping")]
 
 
 def made_up(monkeypatch: pytest.MonkeyPatch, module: object, **values: object) -> None:
@@ -121,3 +126,32 @@ def test_design_prints_widths_and_rehearsals_in_their_units(
     assert heads.split() in lines
     assert ["x0.5", "7.5", "45", "0.12", "66", "0.034"] in lines
     assert ["note", "(warning):", "roll", "is", "not", "found"] in lines
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_design_like_the_paper_tells_the_best_motion_beside_the_best_set(
+    as_json: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    best = SimpleNamespace(name="Tilt2", time=np.arange(3.0), positions=np.zeros((3, 1)), joints=("hip",))
+    sets = [Choice(motions, dict.fromkeys(WIDTHS, width), 10.0) for motions, width in (
+        (("Tilt2",), 2.5), (("Squat", "Tilt2"), 1.25)
+    )]  # fmt: skip
+    found = PaperMotions(Selection((sets[0],), tuple(sets), sets[1], None), {"Sweep": "it falls"}, best)  # type: ignore[arg-type]
+    made_up(monkeypatch, design, load_robot=SimpleNamespace(name="biped", mass=100.0))
+    made_up(monkeypatch, outputs, check_outputs=None)
+    made_up(monkeypatch, paper_motions, paper_motions=found)
+    out = tmp_path / "motion.csv"
+    design.run(Path("robot.yaml"), out, stiffness=500.0, like="campaign", json=as_json, quiet=True)
+    content, printed = json.loads(out.with_suffix(".json").read_text()), capsys.readouterr().out
+    assert (content["best"], content["best_set"], content["refused"]) == (
+        "Tilt2", ["Squat", "Tilt2"], {"Sweep": "it falls"},
+    )  # fmt: skip
+    assert (content["like"], content["robot"], content["motion"]) == ("campaign", "biped", "motion.csv")
+    assert open_log(out).columns["joint.hip.position"].size == 2 * 200 + 1
+    if as_json:
+        assert json.loads(printed) == content
+        return
+    lines = [line.split() for line in printed.splitlines()]
+    assert ["foot", "axis", "parameter", "Tilt2", "best", "set"] in lines
+    assert ["left", "pitch", "stiffness", "2.5", "1.25"] in lines
+    assert "The best set: Squat, Tilt2." in printed

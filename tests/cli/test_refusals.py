@@ -11,8 +11,10 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+from typer import BadParameter
 
 from command_line import identifying_first, refused, run
+from plantar.cli.console.options import seconds
 
 
 @pytest.mark.parametrize(
@@ -169,3 +171,10 @@ def test_no_traceback_in_a_real_process(tmp_path: Path) -> None:
     assert done.stdout == ""
     assert done.stderr.count("\n") == 1
     assert "none.yaml" in done.stderr
+
+
+@pytest.mark.parametrize("text", ["0.099", "-0.099", "5 ms", ""])
+def test_what_no_delay_in_milliseconds_can_be_is_refused(text: str) -> None:
+    with pytest.raises(BadParameter, match=r"ms is no delay|is not a number of milliseconds"):
+        seconds(text)
+    assert [seconds(said) for said in ("0", "0.1", "-0.1", "7.5")] == [0.0, 1e-4, -1e-4, 7.5e-3]

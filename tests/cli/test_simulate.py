@@ -10,10 +10,12 @@ import pytest
 import yaml
 
 import command_line
+from plantar.cli.simulate import _bushes, _reporter
+from plantar.errors import PlantarError
 from plantar.fleet.manifest import read_manifest
 from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
-from plantar.twin import fleet
+from plantar.twin import Bush, fleet
 from plantar.twin.robots.hrp2 import write
 from twin_samples import plan, planned_part, short
 
@@ -91,3 +93,41 @@ def test_what_is_wrong_is_said_in_one_line(
     assert line in said
     assert said.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["1000,20,800", "1000,20,800,16,4e5", "-1,20,800,16", "1e9,20,800,16", "nan,20,800,16"]
+)
+def test_a_bush_has_four_or_six_numbers_from_nothing_on(text: str) -> None:
+    assert _bushes("1000,0,800,0") == dict.fromkeys(("left", "right"), Bush(1000.0, 0.0, 800.0, 0.0))
+    assert _bushes("1000,20,800,16,4e5,1e3")["right"] == Bush(1000.0, 20.0, 800.0, 16.0, 4e5, 1e3)
+    with pytest.raises(PlantarError, match="--bush is not four or six numbers that are at least 0"):
+        _bushes(text)
+
+
+def test_a_robot_on_unknown_bushes_is_asked_for_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = Path(write(tmp_path / "own"))
+    own.write_text(own.read_text().replace("hrp2_like", "another"))
+    assert run("Squat", "--robot", str(own), "--out", str(tmp_path / "out")) == 1
+    assert "'another' stands on unknown bushes (valid: --bush K_pitch,C_pitch" in capsys.readouterr().err
+
+
+def test_motions_that_play_are_told_a_tenth_at_a_time() -> None:
+    said: list[str] = []
+    report = _reporter(2, said.append)
+    for motion, share in (
+        ("a", 0.01),
+        ("a", 0.05),
+        ("b", 0.31),
+        ("a", 0.12),
+        ("a", 1.0),
+        ("b", 0.39),
+        ("b", 1.0),
+    ):
+        report(motion, share)
+    assert said == [
+        "0 of 2 motions played, a 0 %", "0 of 2 motions played, a 0 %, b 30 %", "0 of 2 motions played, a 10 %, b 30 %",
+        "1 of 2 motions played, b 30 %", "2 of 2 motions played",
+    ]  # fmt: skip

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,3 +39,13 @@ def test_a_sole_that_stands_on_its_edge_is_told_with_its_time(forward: float, le
 def test_a_sole_that_stands_inside_its_edges_or_in_the_air_is_not() -> None:
     assert on_an_edge(hrp2.robot(), standing(FRONT - 0.01, 0.0)) is None
     assert on_an_edge(hrp2.robot(), standing(FRONT, 0.0, load=5.0)) is None
+
+
+def test_a_sensor_that_reads_the_opposite_says_the_same() -> None:
+    robot, log = hrp2.robot(), standing(FRONT, 0.0)
+    feet = {
+        name: replace(foot, wrench=replace(foot.wrench, sign=-foot.wrench.sign))
+        for name, foot in robot.feet.items()
+    }
+    turned = replace(log, columns={name: -values for name, values in log.columns.items()})
+    assert on_an_edge(replace(robot, feet=feet), turned) == on_an_edge(robot, log)

@@ -48,6 +48,14 @@ def test_boxes_that_meet_are_named(reach: float, touches: bool) -> None:
         assert found.touching is None
 
 
+def test_what_is_fixed_to_a_neighbour_is_one_too() -> None:
+    """A lid above the first box, which the URDF tells last: the third box alone could touch it."""
+    lid = f'<link name="lid">{INERTIA}{BOX}</link><joint name="over" type="fixed"><parent link="first"/>'
+    lid += '<child link="lid"/><origin xyz="0 0 0.2"/></joint></robot>'
+    robot = replace(hrp2.robot(), urdf=boxes().replace("</robot>", lid))
+    assert self_collision(robot, pin.neutral(robot.floating_model)[None]).pairs == 2
+
+
 def test_a_robot_without_geometry_is_not_watched() -> None:
     robot = hrp2.robot()
     assert self_collision(robot, pin.neutral(robot.floating_model)[None]).pairs == 0

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from export_robots import CENTRE, SOLE_Z, bush_rotation, result, write_sdf
+from plantar.conventions import INERTIAL_NAMES
 from plantar.errors import ExportError
 from plantar.exporters import export
 
@@ -92,8 +93,6 @@ def test_sdf_models_of_both_pose_grammars(version: str, feet: dict[str, Any], tm
 def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Path) -> None:
     import pinocchio as pin
 
-    from plantar.conventions import INERTIAL_NAMES
-
     inertia = "<inertia ixx='.01' ixy='0' ixz='0' iyy='.01' iyz='0' izz='.01'/>"
     sensor = f'<link name="left_sensor"><inertial><mass value="0.7"/>{inertia}</inertial></link>'
     urdf.write_text(urdf.read_text().replace('<link name="left_sensor"/>', sensor))
@@ -111,6 +110,25 @@ def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Pa
     again = pin.buildModelFromUrdf(str(tmp_path / "identified.urdf"), pin.JointModelFreeFlyer())
     for joint, values in wanted.items():
         np.testing.assert_allclose(again.inertias[joint].toDynamicParameters(), values, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("link", "lost", "value", "said"),
+    [
+        ("left_shin", "Iyy", 1.0, "link 'left_shin' has no parameter Iyy"),
+        ("left_shine", "", 1.0, "the URDF has no link 'left_shine'"),
+        ("left_shin", "", -1.0, "link 'left_shin' has the identified mass -1 kg"),
+        ("", "", 1.0, "the result holds no inertial_parameters"),
+    ],
+)
+def test_inertias_that_a_urdf_cannot_have_are_refused(
+    link: str, lost: str, value: float, said: str, urdf: Path, tmp_path: Path
+) -> None:
+    rows = [{"link": link, "name": name, "value": value} for name in INERTIAL_NAMES if link and name != lost]
+    made = {"schema": "plantar.inertia/1", "robot": "biped", "plantar": "0.1.0", "inertial_parameters": rows}
+    with pytest.raises(ExportError, match=said):
+        export(made, "urdf", tmp_path / "o.urdf", model=urdf)
+    assert not (tmp_path / "o.urdf").exists()
 
 
 def test_a_foot_of_another_name_and_no_sole_shape(tmp_path: Path, urdf: Path) -> None:

@@ -15,11 +15,13 @@ from biped import VERTICAL, record, sway
 from feet_trials import PUNCTUAL
 from plantar.errors import DataError, LogError
 from plantar.feet.first_look import checked_in_turn
+from plantar.feet.fit.vertical_stiffness import fit_vertical_stiffness
 from plantar.feet.prepare import PreparedLogs, prepare_all, prepare_unseen
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import logs_of
 from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
 
@@ -148,6 +150,21 @@ def test_the_logs_to_fit_alone_choose_the_filter(
     found = prepared(robot, logs, replace(PUNCTUAL, cutoff=None))
     assert asked == ["first", "second"]
     assert {one.cutoff for one in found.recordings} == {found.settings.cutoff} == {3.0}
+
+
+def test_heights_are_told_by_the_logs_to_fit_without_their_slides(
+    robot: RobotModel, logs: list[MotionLog], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[object] = []
+    room, flat = "plantar.feet.prepare", Note("flat", "info", "without slides")
+    monkeypatch.setattr(f"{room}.without_slip", lambda _, recording: replace(recording, notes=(flat,)))
+    monkeypatch.setattr(f"{room}.heights_of", lambda _, recording: (recording.name, recording.notes))
+    monkeypatch.setattr(
+        f"{room}.fit_vertical_stiffness",
+        lambda heights, *others: told.extend(heights) or fit_vertical_stiffness([], *others),
+    )
+    prepared(robot, logs)
+    assert told == [("first", (flat,)), ("second", (flat,))]
 
 
 def test_a_late_accelerometer_leaves_the_sensors_delay_as_unsure_as_its_own(

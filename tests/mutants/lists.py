@@ -10,6 +10,7 @@ from drawn import DRAWN
 from drawn_afresh import DRAWN_AFRESH
 from drawn_again import DRAWN_AGAIN
 from drawn_anew import DRAWN_ANEW
+from drawn_at_random import DRAWN_AT_RANDOM
 from drawn_blind import DRAWN_BLIND
 from drawn_by_lot import DRAWN_BY_LOT
 from drawn_everywhere import DRAWN_EVERYWHERE
@@ -26,6 +27,7 @@ from other_robots import OTHER_ROBOTS
 from seldom_run import SELDOM_RUN
 from sensor_faults import SENSOR_FAULTS
 from shared_work import SHARED_WORK
+from soles_and_freedom import SOLES_AND_FREEDOM
 from standing_soles import STANDING_SOLES
 from unlisted import UNLISTED
 
@@ -54,6 +56,8 @@ LISTS = {
     "standing_soles": STANDING_SOLES,
     "other_robots": OTHER_ROBOTS,
     "unlisted": UNLISTED,
+    "drawn_at_random": DRAWN_AT_RANDOM,
+    "soles_and_freedom": SOLES_AND_FREEDOM,
     "seldom_run": SELDOM_RUN,
     "by_hand": BY_HAND,
 }

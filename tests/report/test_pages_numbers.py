@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import date
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +14,15 @@ from plantar.fleet.alarms import alarm_of
 from plantar.fleet.series import Days, Series, SeriesKey, by_day
 from plantar.fleet.statistics.changes import Change
 from plantar.fleet.summary import Effect, FleetSummary, Level, Reason
+from plantar.notes import Note
 from plantar.report.content import Table
-from plantar.report.dynamics import _inertia, _inertia_verdict, _joints_verdict, _validation
+from plantar.report.dynamics import (
+    _inertia,
+    _inertia_verdict,
+    _joints_verdict,
+    _validation,
+    write_dynamics_report,
+)
 from plantar.report.fleet import _effects, _failures, _robots, _trends, _units
 from plantar.report.tables import (
     comparison_tables,
@@ -149,6 +157,14 @@ def test_a_dynamics_page_has_every_number_under_its_head() -> None:
         "samples": "12.0", "skill": "75 % better",
     }  # fmt: skip
     assert [row[-1].text for row in table.rows] == ["75 % better", "none"]
+
+
+def test_a_dynamics_page_has_warnings_and_remarks(tmp_path: Path) -> None:
+    notes = (Note("regularisation", "warning", "held back much"), Note("rates", "info", "were derived"))
+    dynamics(notes=notes).save(tmp_path)
+    page = write_dynamics_report(tmp_path).read_text()
+    assert page.count("held back much") == page.count("were derived") == 1
+    assert page.index("held back much") < page.index("were derived")
 
 
 def test_many_joints_are_counted() -> None:

@@ -83,3 +83,16 @@ def test_text_page_and_table() -> None:
     assert inertia.to_table().to_pylist()[0]["cad"] == 2.0
     row = joints.to_table().to_pylist()[0]
     assert (row["joint"], row["low"], row["high"], row["verdict"]) == ("knee", 2.8, 3.2, "usable")
+
+
+def test_a_score_of_nothing_is_written_and_one_that_is_not_known_left_out() -> None:
+    perfect = DynamicsScore(
+        "direct", "a", "N", 0.0, 0.0, 5.0, 6.0, 0.0, 100, percent_of_max=0.0, axis="force.x"
+    )
+    written = perfect.to_dict()
+    assert [written[name] for name in ("mean_abs_error", "percent_of_max", "cad_rms_error")] == [
+        0.0,
+        0.0,
+        0.0,
+    ]
+    assert not {"joint", "relative_error_percent"} & set(written)

@@ -10,7 +10,6 @@ namespace plantar {
 namespace {
 
 constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
-constexpr double HARDLY_SLIPS = 0.99;   // of an element's largest state: below it noise moves it as the deflection
 
 }  // namespace
 
@@ -71,7 +70,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
     running_ = true, begun_ = time;
   }
   const double load = forces[0], x = forces[1], y = forces[2];
-  double channels[CHANNELS] = {1.0,
+  double channels[FilteredRow::CHANNELS] = {1.0,
                                time - begun_,
                                load,
                                x,
@@ -108,7 +107,7 @@ void FootTracker::hold(double time, double dt, const double* channels) noexcept 
   }
   HeldRow& row = held_[(first_held_ + held_count_++) % HELD];
   row.time = time, row.dt = dt;
-  std::copy_n(channels, CHANNELS, row.channels);
+  std::copy_n(channels, FilteredRow::CHANNELS, row.signals.channels);
 }
 
 void FootTracker::commit(double before) noexcept {
@@ -119,27 +118,14 @@ void FootTracker::commit(double before) noexcept {
 }
 
 void FootTracker::give(const HeldRow& row) noexcept {
-  const double* c = row.channels;
   for (int a = 0; a < 2; ++a) {
-    const double* own = c + FIRST_AXIS + AXIS_CHANNELS * a;
-    // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
-    // torque.
-    const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
-    const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
-    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0, own[GAP]},
-                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded, -own[TORQUE_RATE],
-                           own[TURNING]},
-                          own[TORQUE],
-                          {0.0, 0.0, 0.0, 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
-    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
-    line.noise[sticks && noise_.gyroscope ? OF_RATE_AND_ELEMENT : OF_RATE] = noise_.of_rate[a];
-    if (!known) {
+    const RegressionRow line = row.signals.of_axis(a, noise_);
+    if (has_element(*foot_, a)) {
+      axes_[a].add(line, row.dt);
+    } else {
       memories_[a].add(line, row.dt);
-      line.columns[SLIP_TORQUE] = line.own[BEGINNING] = 0.0;
-      line.noise[OF_ANGLE_AND_ELEMENT] = line.noise[OF_RATE_AND_ELEMENT] = 0.0;
-      line.noise[OF_ANGLE] = noise_.of_angle[a], line.noise[OF_RATE] = noise_.of_rate[a];
+      axes_[a].add(without_element(line), row.dt);
     }
-    axes_[a].add(line, row.dt);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "online/delay_watch.hpp"
 #include "online/edge_watch.hpp"
 #include "online/element_state.hpp"
+#include "online/filtered_row.hpp"
 #include "online/foot_kinematics.hpp"
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
@@ -69,15 +70,10 @@ class FootTracker {
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int CHANNELS = 22;
   static constexpr int HELD = 32;  // rows that wait until the foot has not lifted behind them
-  // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
-  // then of each axis.
-  enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
-  enum AxisChannel : int { ANGLE, ANGLE_RATE, TURNING, ELEMENT, GAP, TORQUE, TORQUE_RATE, AXIS_CHANNELS };
   struct HeldRow {
     double time, dt;
-    double channels[CHANNELS];
+    FilteredRow signals;
   };
 
   // A tick's signals in the middle of its period, in the order of `angles_` and `forces_`; the parts of its rates that are
@@ -101,7 +97,6 @@ class FootTracker {
   bool leans(const FootKinematics& motion, double inside, double dt) noexcept;
   void close_blocks() noexcept;
   void publish(int axis) noexcept;
-  void publish_compliance() noexcept;
 
   const FootModel* foot_;
   double weight_, least_load_;
@@ -114,7 +109,7 @@ class FootTracker {
   AirZero zero_;
   Shaking shaking_;
   EdgeWatch edge_;
-  CausalFilter<CHANNELS> filter_;
+  CausalFilter<FilteredRow::CHANNELS> filter_;
   DelayLine<8> angles_;  // of both axes: angles, rates, angles without noise, the gyroscope's part of the rates
   std::array<SmoothAngle, 2> smooth_;
   DelayLine<7> forces_;  // load, horizontal forces, both torques, their rates

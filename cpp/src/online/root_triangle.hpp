@@ -46,7 +46,11 @@ struct RootTriangle {
     for (int i = 0; i < N; ++i) {
       if (row[i] == 0.0) continue;
       const double most = std::sqrt(share) * r[i][i];
-      const double s = r[i][i] > 0.0 ? std::clamp(row[i], -most, most) / r[i][i] : 0.0, c = std::sqrt(1.0 - s * s);
+      if (std::abs(row[i]) > most) {
+        const double left = most / std::abs(row[i]);
+        for (int j = i; j <= N; ++j) row[j] *= left;
+      }
+      const double s = r[i][i] > 0.0 ? row[i] / r[i][i] : 0.0, c = std::sqrt(1.0 - s * s);
       for (int j = i; j <= N; ++j) {
         const double above = r[i][j];
         r[i][j] = (above - s * row[j]) / c;

@@ -39,9 +39,8 @@ def self_collision(robot: RobotModel, configurations: Array) -> SelfCollision:
     for place in reversed(range(len(geometry.collisionPairs))):
         pair = geometry.collisionPairs[place]
         joints = [geometry.geometryObjects[number].parentJoint for number in (pair.first, pair.second)]
-        neighbours = (
-            joints[0] in (joints[1], model.parents[joints[1]]) or model.parents[joints[0]] == joints[1]
-        )
+        # What is fixed to a parent may come after its children.
+        neighbours = any(model.parents[joint] == other for joint, other in (joints, joints[::-1]))
         if neighbours or shapes.collisionResults[place].isCollision():
             geometry.removeCollisionPair(pair)
     shapes = geometry.createData()

@@ -37,9 +37,6 @@ class Truth:
     columns: Mapping[str, Array] = field(repr=False)
     facts: Mapping[str, Any]
 
-    def column(self, name: str) -> Array:
-        return self.columns[name]
-
 
 @dataclass(frozen=True)
 class TwinRecording:

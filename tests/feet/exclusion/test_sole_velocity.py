@@ -82,6 +82,8 @@ def test_the_mean_square_of_an_acceleration_counts_what_is_within_a_tenth_of_a_s
         assert found[place] == pytest.approx(25 / count)
         assert found[place + 20] > 0 == found[place + 21]
         assert found[6000] == 0
+    acceleration[8000] = np.nan
+    assert sole_velocity._mean_square(acceleration, PERIOD)[9000] == 0
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.7, -2.0])
@@ -112,3 +114,13 @@ def test_an_attitudes_noise_is_what_the_gyroscope_does_not_turn() -> None:
     found = sole_velocity._attitude_noise(np.hstack([w, v]), rates, PERIOD)
     inside = slice(200, -200)
     assert found[inside] == pytest.approx(quick[inside, None] * axis, abs=1e-4)
+
+
+def test_a_sensor_has_some_noise_always() -> None:
+    assert sole_velocity._drift(STILL, NO_CAUSES, STILL[:, 0], STILL, PERIOD)[2] == 0.0002
+
+
+def test_what_moves_as_noise_does_is_as_unsure() -> None:
+    velocity = np.random.default_rng(0).normal(0, 0.01, STILL.shape)
+    found = sole_velocity._deviation(velocity, 0.003, STILL[:, 0], STILL[:, 0])
+    assert found == pytest.approx(0.01, rel=0.03)

@@ -109,3 +109,8 @@ def test_few_days_say_nothing() -> None:
     assert history_of(np.zeros(0), np.zeros(0), np.zeros(0), RATE).trend is None
     same = history_of(np.arange(30.0), np.ones(30), np.ones(30), RATE)
     assert same.changes == ()
+
+
+def test_a_day_that_stands_apart_from_too_few_for_a_line_is_an_outlier() -> None:
+    time, values = np.arange(3.0), np.array([0.0, 1.0, 0.0])
+    assert _is_outlier(1, [0], time, values, np.ones(3), Limits(4.0, 5.0))

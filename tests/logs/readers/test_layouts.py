@@ -92,3 +92,5 @@ def test_what_some_messages_lack_is_no_number_there(frame: str) -> None:
     position = np.concatenate(series.values["position"])[order]
     np.testing.assert_array_equal(position[::2], [[0.0, -0.0], [2.0, -2.0], [4.0, -4.0]])
     assert np.isnan(position[1::2]).all()
+    np.testing.assert_array_equal(series.column("position", 1)[order], position[:, 1])
+    assert np.isnan(series.column("effort", 0)).tolist() == 5 * [True]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import re
 import sqlite3
 import struct
 import subprocess
@@ -21,7 +22,7 @@ from biped import record, sway
 from biped_robot import make_robot
 from log_formats import WRITERS
 from mcap_records import mcap_of_chunk
-from plantar.errors import LogError
+from plantar.errors import LogError, NoRoom
 from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log, read_limit, robot_logger
@@ -170,6 +171,16 @@ def test_logs_together_fit_as_one_would(original: MotionLog, tmp_path: Path) -> 
     assert len(open_together(paths, robot, int(2.1 * original.size))) == 2
     with pytest.raises(LogError, match="more with --memory"):
         open_together(paths, robot, int(1.5 * original.size))
+
+
+def test_a_log_may_take_what_those_before_it_leave(original: MotionLog, tmp_path: Path) -> None:
+    robot = make_robot(tmp_path / "robot")
+    paths = [tmp_path / "a.csv", tmp_path / "b.csv"]
+    for path in paths:
+        save_log(original, path)
+    left = int(0.3 * original.size)
+    with pytest.raises(NoRoom, match=f"b.csv: .*at most {re.escape(shown(left))}, or more with --memory"):
+        open_together(paths, robot, original.size + left)
 
 
 @pytest.mark.parametrize("count", [COLUMNS + 1, 2 * COLUMNS + 1])

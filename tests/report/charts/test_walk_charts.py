@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from plantar.report.charts import strips, unseen
+from plantar.report.charts import strips, unseen, zeros
 from plantar.report.charts.chart import Band, Chart, Dot, Path
 from plantar.report.charts.strips import strip_charts
 from plantar.report.charts.unseen import unseen_charts
@@ -117,6 +117,14 @@ def test_lines_part_the_recordings() -> None:
         (each for each in parted if each), range(STANCES - 1, len(at) - 1, STANCES), strict=True
     ):
         assert line == pytest.approx((at[place] + at[place + 1]) / 2), "in the middle of the gap"
+
+
+def test_of_many_swings_every_few_are_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = walk_result().swing_zeros
+    monkeypatch.setattr(zeros, "MOST_SWINGS", len(rows) - 1)
+    (force, _) = zero_charts(rows)
+    assert len(dots(force, "component z")) == (len(rows) + 1) // 2
+    assert dots(force, "component z")[-1].hover.startswith(f"{rows[-1].motion}, ")
 
 
 def test_one_swing_is_a_chart_too() -> None:

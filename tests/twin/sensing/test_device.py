@@ -9,6 +9,7 @@ from plantar.twin.robots import hrp2
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.sensing.exact import exact_columns
+from plantar.twin.sensing.logger import _device
 from plantar.twin.sensing.sensor_errors import SensorSpread, with_sensor_errors
 from plantar.twin.sensing.sensors import device_reading
 from twin_samples import tilted
@@ -52,3 +53,13 @@ def test_errors_of_sensors_are_the_robots_not_the_recordings() -> None:
     none, _ = with_sensor_errors(exact, rollout.time, robot, SensorSpread(*[0.0] * 7), 1)
     for name, values in none.items():
         np.testing.assert_allclose(values, exact[name], atol=1e-12)
+
+
+def test_all_joints_are_sampled_together_whatever_their_names() -> None:
+    columns = (
+        "joint.knee.position",
+        "joint.leg.knee.velocity",
+        "wrench.left.foot.force.z",
+        "imu.base.orientation.w",
+    )
+    assert [_device(column) for column in columns] == ["joint", "joint", "wrench.left.foot", "imu.base"]

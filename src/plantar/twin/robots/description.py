@@ -55,10 +55,6 @@ class Description:
     def joint_names(self) -> tuple[str, ...]:
         return tuple(body.joint for body in self.bodies[1:])
 
-    @property
-    def mass(self) -> float:
-        return float(sum(body.mass for body in self.bodies))
-
     def index(self, body: str) -> int:
         """The place of a body in `bodies`; KeyError when there is none of that name."""
         for place, candidate in enumerate(self.bodies):

@@ -32,11 +32,6 @@ class Physics:
     settle: float = 3.0
     timestep: float = TIMESTEP
 
-    @property
-    def linear(self) -> bool:
-        """Whether every bush is a plain spring and damper."""
-        return self.bushes is None or all(bush.is_linear for bush in self.bushes.values())
-
     def stiffened(self, share: float) -> Physics:
         """The same world with stiffness and damping of pitch and roll larger by a share."""
         names = ("pitch_stiffness", "pitch_damping", "roll_stiffness", "roll_damping")

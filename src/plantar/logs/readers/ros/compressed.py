@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bz2
-import zlib
 
 from plantar.errors import LogError, needs
 from plantar.logs.readers.read_limit import ReadLimit, shown
@@ -41,25 +40,21 @@ def unpack_chunk(kind: str, data: bytes | memoryview, claimed: int, limit: ReadL
     return content
 
 
-def decompress(kind: str, data: bytes | memoryview, limit: int = CHUNK_LIMIT) -> bytes:
-    """The content of a chunk compressed by '' (not at all), zstd, lz4 or bz2.
+def decompress(kind: str, data: bytes | memoryview, limit: int) -> bytes:
+    """The content of a chunk compressed by zstd, lz4 or bz2.
 
     Raises BrokenChunk: unknown kind, damaged, or more than `limit` bytes. MissingExtra: no decompressor.
     """
     try:
-        if kind in ("", "none"):
-            content = bytes(data)
-        elif kind == "bz2":
+        if kind == "bz2":
             content = bz2.BZ2Decompressor().decompress(data, limit + 1)
-        elif kind == "zlib":
-            content = zlib.decompressobj().decompress(data, limit + 1)
         elif kind == "zstd":
             content = _zstd(data, limit)
         elif kind == "lz4":
             content = _lz4(data, limit)
         else:
             raise BrokenChunk(f"unknown compression '{kind[:20]}'")
-    except (OSError, ValueError, EOFError, zlib.error, RuntimeError) as error:
+    except (OSError, ValueError, EOFError, RuntimeError) as error:
         raise BrokenChunk(str(error) or "damaged") from error
     if len(content) > limit:
         raise TooLong(f"holds more than {limit} bytes")
