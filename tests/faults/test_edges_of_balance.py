@@ -22,18 +22,18 @@ class Stub:
 
     misfit: float = 0.0
     lean: float = 0.0
-    exchanged: float = np.inf
+    exchanged: float = 10.0
     world: float = 10.0
     torques: bool = False
     tilt: np.ndarray = field(default_factory=lambda: UP)
     turn: float = 0.0
+    moves: float = 0.1
     imu = SimpleNamespace(name="chest")
 
     def sides(self) -> StanceSides:
         arms = np.zeros((10, 2, 6, 3))
-        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit * np.linspace(
-            0.9, 1.1, 10
-        )  # what moves is a share
+        along = np.linspace(1 - self.moves, 1 + self.moves, 10)  # what moves is 5/9 of `moves`
+        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit * along
         lean = np.radians(self.lean)
         push = np.tile([np.sin(lean), 0.0, np.cos(lean)], (10, 1)) if self.tilt is UP else self._turned()
         return StanceSides(arms, self.tilt, push)
@@ -164,6 +164,18 @@ def test_a_joint_reversed_is_certain_where_hardly_a_tenth_is_left(
     found = said(monkeypatch, Stub(misfit, lean), others, joints)
     assert found is not None
     assert (found.code, found.fatal) == ("sign", fatal)
+
+
+@pytest.mark.parametrize(
+    ("misfit", "exchanged", "told"),
+    [(0.015, 0.046, True), (0.015, 0.049, False), (0.0061, 0.01, True), (0.0059, 0.01, False)],
+)
+def test_feet_that_are_swapped_in_a_small_sway(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, exchanged: float, told: bool
+) -> None:
+    """Half of the misfit moves as read, and of what is left with the wrenches exchanged an eighteenth."""
+    found = said(monkeypatch, Stub(misfit, exchanged=exchanged, moves=0.9))
+    assert (found is not None and (found.code, found.fatal) == ("swapped_feet", True)) == told
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from plantar.robot.model import RobotModel
 BETTER = 0.5  # share of the misfit that must be left after the change
 FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
+SHIFTED = 0.003  # m: what moves by less may be noise of the forces
 ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
@@ -62,7 +63,9 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
         yield from found if unit else [_swapped()]
         return
-    if as_is <= NOTABLE and sides.lean <= LEANING:
+    # No wrong mass or place moves with the load from foot to foot: exchanged feet show in a small sway too.
+    follows = sides.moving > SHIFTED and other.moving < FAR_BETTER * sides.moving
+    if as_is <= NOTABLE and sides.lean <= LEANING and not follows:
         yield from _turned(stance, sides)
         return
     in_metres = sides.moment_arms.copy()
@@ -88,7 +91,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text += f"{100 * world.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
         valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
         yield Finding("wrench_turned", f"{text} ({valid})")
-    elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
+    elif (follows or (as_is > NOTABLE and exchanged < BETTER * as_is)) and exchanged < best + ALIKE * as_is:
         yield _swapped(f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else "")
     elif turned is not None and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is):
         text = f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
