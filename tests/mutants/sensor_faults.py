@@ -75,8 +75,8 @@ SENSOR_FAULTS = (
         ("sensors/test_moment_balance.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the noise of readings is arms", "below * _products(row",
-        "0 * below * _products(row", ("sensors/test_moment_balance.py",),
+        "sensors/moment_errors.py", "the noise of readings is arms", "-= factor * _products(noise)",
+        "-= 0 * factor * _products(noise)", ("sensors/test_moment_balance.py",),
     ),
     Mutant(
         "robot_guess/passive.py", "a foot may push the way it tilts",

@@ -28,6 +28,7 @@ LEAST_ARM = 0.003  # m, likewise as LEAST_GAIN
 LEAST_BETWEEN = 0.001  # N.m/N, likewise
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
+QUICKER = 4.0  # Hz: where noise grows from below to above it, it is that of encoders' accelerations
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 LATE_TORQUES = 0.01  # s, of torques behind the forces of the same sensors: mostly read together
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
@@ -61,7 +62,8 @@ class MomentErrors(NamedTuple):
 
 class MomentRow(NamedTuple):
     """One row of Newton's law: `signals` (n, c + 1) each `period` [s] are what it misses and its columns; `noise`
-    (n, k) is what of some of them, which are `noisy` (k,), is too quick to be the robot's: of none of a walk."""
+    (2, n, k) is what of some of them, which are `noisy` (k,), is too quick to be the robot's, below and above QUICKER:
+    of none of a walk."""
 
     signals: Array
     period: float
@@ -78,8 +80,8 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         products.append(_products(own))
         power.append(products[-1].sum(axis=0) / len(own))
         share = stride * row.period / APART
-        below = _below_to_above(row.period) / stride
-        products[-1][:, row.noisy[:, None], row.noisy] -= below * _products(row.noise)
+        for factor, noise in zip(_below_to_above(row.period) / stride, row.noise, strict=True):
+            products[-1][:, row.noisy[:, None], row.noisy] -= factor * _products(noise)
     return MomentErrors(np.array(products), np.array(power), share, _zero_deviations(robot))
 
 
@@ -124,14 +126,17 @@ def moment_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -
         links = len(signals) - len(zeros) - len(by_links)
         noisy = np.r_[:of_sensors, links : links + len(by_links)][: 0 if steps else None]
         slow = np.empty((len(missing), len(signals)))
-        noise = np.empty((len(missing), len(noisy)), dtype=np.float32)
+        noise = np.empty((2, len(missing), len(noisy)), dtype=np.float32)
         for first in range(0, len(signals), TOGETHER):
             some = slice(first, first + TOGETHER)
             # Without what postures and drifting zeros do to them.
             quick = without_slow_cosines(np.column_stack(signals[some]), period, SLOW)
             slow[:, some] = quick if steps else low_pass(quick, period, BAND)
             own = (first <= noisy) & (noisy < first + TOGETHER)
-            noise[:, own] = (quick - slow[:, some])[:, noisy[own] - first]
+            if own.any():
+                fast = (quick - slow[:, some])[:, noisy[own] - first]
+                noise[0][:, own] = low_pass(fast, period, QUICKER)
+                noise[1][:, own] = fast - noise[0][:, own]
         yield MomentRow(slow, period, noisy, noise)
 
 
@@ -264,12 +269,15 @@ def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResi
     return (late - early) / (2 * step), by_mount
 
 
-def _below_to_above(period: float) -> float:
-    """Power of white noise below BAND over that above it, behind the filters that both have passed.
+def _below_to_above(period: float) -> Array:
+    """Factors (2,) of the power of noise above BAND, below and above QUICKER, that make its power below BAND.
 
     The feet's own readings are in the columns and in what is missing: their noise, multiplied with itself, would pass
-    for arms of centimetres. Above BAND is hardly anything else.
+    for arms of centimetres. Above BAND is hardly anything else. The noise of forces and IMU is white, that of
+    encoders' accelerations grows with the fourth power of the frequency; the factors are right for both.
     """
     hertz = np.linspace(0.0, 0.5 / period, 2000)
-    passed, slow = (gain(hertz, period, cutoff) for cutoff in (CUTOFF, BAND))
-    return float(np.sum((passed * slow) ** 2) / np.sum((passed * (1 - slow)) ** 2))
+    passed, slow, middle = (gain(hertz, period, cutoff) for cutoff in (CUTOFF, BAND, QUICKER))
+    bands = passed * [slow, (1 - slow) * middle, (1 - slow) * (1 - middle)]
+    below, *above = (bands**2) @ np.column_stack([np.ones_like(hertz), hertz**4])
+    return np.linalg.solve(np.array(above).T, below)
