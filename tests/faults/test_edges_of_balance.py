@@ -22,18 +22,18 @@ class Stub:
 
     misfit: float = 0.0
     lean: float = 0.0
-    exchanged: float = np.inf
+    exchanged: float = 10.0
     world: float = 10.0
     torques: bool = False
     tilt: np.ndarray = field(default_factory=lambda: UP)
     turn: float = 0.0
+    moves: float = 0.1
     imu = SimpleNamespace(name="chest")
 
     def sides(self) -> StanceSides:
         arms = np.zeros((10, 2, 6, 3))
-        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit * np.linspace(
-            0.9, 1.1, 10
-        )  # what moves is a share
+        along = np.linspace(1 - self.moves, 1 + self.moves, 10)  # what moves is 5/9 of `moves`
+        arms[:, 0, 4 if self.torques else 1, 0] = self.misfit * along
         lean = np.radians(self.lean)
         push = np.tile([np.sin(lean), 0.0, np.cos(lean)], (10, 1)) if self.tilt is UP else self._turned()
         return StanceSides(arms, self.tilt, push)
@@ -109,7 +109,7 @@ def test_wrenches_in_the_world_s_axes(
     monkeypatch: pytest.MonkeyPatch, misfit: float, world: float, turned: float | None, told: bool
 ) -> None:
     """They leave less than half, and less than sensors that are turned by a quarter."""
-    quarter = None if turned is None else standing._TurnedWrench(turned, 90, "columns 'wrench.*'")
+    quarter = None if turned is None else standing._TurnedWrench(turned, 1.0, 90, "columns 'wrench.*'")
     found = said(monkeypatch, Stub(misfit, world=world), turned=quarter)
     assert (found is not None and "read as in the world's axes" in found.text) == told
 
@@ -118,7 +118,7 @@ def test_wrenches_in_the_world_s_axes(
 def test_no_unit_is_told_where_the_world_s_axes_explain_what_moves(
     monkeypatch: pytest.MonkeyPatch, world: float, code: str
 ) -> None:
-    quarter = standing._TurnedWrench(0.034, 90, "columns 'wrench.*'")
+    quarter = standing._TurnedWrench(0.034, 1.0, 90, "columns 'wrench.*'")
     unit = Finding("torque_unit", "another unit", True)
     found = said(monkeypatch, Stub(0.1, world=world, exchanged=0.1), turned=quarter, unit=(unit,))
     assert found is not None
@@ -167,6 +167,31 @@ def test_a_joint_reversed_is_certain_where_hardly_a_tenth_is_left(
 
 
 @pytest.mark.parametrize(
+    ("misfit", "exchanged", "told"),
+    [(0.015, 0.046, True), (0.015, 0.049, False), (0.0061, 0.01, True), (0.0059, 0.01, False)],
+)
+def test_feet_that_are_swapped_in_a_small_sway(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, exchanged: float, told: bool
+) -> None:
+    """Half of the misfit moves as read, and of what is left with the wrenches exchanged an eighteenth."""
+    found = said(monkeypatch, Stub(misfit, exchanged=exchanged, moves=0.9))
+    assert (found is not None and (found.code, found.fatal) == ("swapped_feet", True)) == told
+
+
+@pytest.mark.parametrize(
+    ("misfit", "moving", "told"),
+    [(0.015, 0.0026, True), (0.015, 0.0027, False), (0.0061, 0.001, True), (0.0059, 0.001, False)],
+)
+def test_sensors_that_are_turned_in_a_small_sway(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, moving: float, told: bool
+) -> None:
+    """Half of the misfit moves as read."""
+    turned = standing._TurnedWrench(misfit / 4, moving, 180, "columns 'wrench.left.*'")
+    found = said(monkeypatch, Stub(misfit, moves=0.9), turned=turned)
+    assert (found is not None and found.code == "wrench_turned") == told
+
+
+@pytest.mark.parametrize(
     ("exchanged", "best", "said_too", "told"),
     [
         (0.049, np.inf, False, True),
@@ -203,7 +228,7 @@ def test_a_sensor_that_is_turned_by_a_quarter(
     monkeypatch: pytest.MonkeyPatch, left: float, best: float, told: bool
 ) -> None:
     """It leaves a third, and clearly less than any reversal."""
-    turned = standing._TurnedWrench(left, -90, "columns 'wrench.left.*'")
+    turned = standing._TurnedWrench(left, 1.0, -90, "columns 'wrench.left.*'")
     found = said(monkeypatch, Stub(0.1), {"column 'a'": best} if np.isfinite(best) else {}, turned=turned)
     assert (found is not None and found.code == "wrench_turned") == told
     if found and told:

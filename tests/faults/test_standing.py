@@ -14,9 +14,10 @@ from plantar.faults.standing import check_balance
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.twin import PAPER, PRESETS
+from plantar.twin.play import rolled
 from plantar.twin.recording import record
 from plantar.twin.robots import hrp2
-from twin_samples import swayed, tilted, walked
+from twin_samples import SETTLED, planned_part, swayed, tilted, walked
 
 SENSORS = PRESETS["sensors"]
 
@@ -123,6 +124,16 @@ def test_wrenches_of_exchanged_feet_are_refused(sway: MotionLog) -> None:
     assert (finding.code, finding.fatal) == ("swapped_feet", True)
 
 
+def test_exchanged_feet_are_refused_in_a_sway_of_half_a_centimetre() -> None:
+    """Both feet stand, and the weight goes a little from one to the other."""
+    robot = hrp2.robot()
+    played = rolled(planned_part("Tilt3", robot), robot, SETTLED)
+    log = record(played, robot, SENSORS.physics(PAPER), SENSORS, 0).log
+    assert list(check_balance(robot, log)) == []
+    (finding,) = check_balance(robot, with_feet_exchanged(log))
+    assert (finding.code, finding.fatal) == ("swapped_feet", True)
+
+
 @pytest.mark.parametrize(("scale", "code"), [(1.0, "swapped_feet"), (1000.0, "torque_unit")])
 def test_moments_of_exchanged_feet_are_no_unit(scale: float, code: str) -> None:
     """Of a weight that goes from foot to foot the torques are a small part."""
@@ -142,7 +153,7 @@ def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
 ) -> None:
     stance, as_read = Mock(), Mock(misfit=0.3, moving=0.1, lean=0.0)
     stance.sides.return_value = as_read
-    stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left)
+    stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left, moving=0.1)
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "_turned_wrench", lambda *_: None)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
@@ -169,7 +180,7 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     stance.sides.return_value = Mock(
         misfit=0.3, moving=0.1, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still
     )
-    stance.exchanged_wrenches.return_value.sides.return_value.misfit = 0.02
+    stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=0.02, moving=0.1)
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})

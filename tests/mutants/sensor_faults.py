@@ -75,8 +75,8 @@ SENSOR_FAULTS = (
         ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
-        "sensors/moments/moment_errors.py", "the noise of readings is arms", "below * _products(row",
-        "0 * below * _products(row", ("sensors/moments/test_torque_gains.py",),
+        "sensors/moments/moment_errors.py", "the noise of readings is arms",
+        "with_noise - np", "with_noise - 0 * np", ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
         "robot_guess/passive.py", "a foot may push the way it tilts",

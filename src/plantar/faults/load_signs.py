@@ -37,6 +37,7 @@ def check_load_signs(robot: RobotModel, loads: Mapping[str, Array]) -> Iterator[
             yield Finding("zeroed_under_load", f"{text} (valid: 0; zero the sensor in the air)", True)
         else:
             valid = f"valid: > 0; set 'sign: {-int(foot.wrench.sign)}' in feet.{name}.wrench"
+            valid += ", or turn its rpy if it sits upside down"
             yield Finding("sign", f"{text} ({valid})", True)
 
 

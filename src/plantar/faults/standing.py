@@ -18,6 +18,7 @@ from plantar.robot.model import RobotModel
 BETTER = 0.5  # share of the misfit that must be left after the change
 FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
+SHIFTED = 0.003  # m: what moves by less may be noise of the forces
 ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
@@ -36,9 +37,11 @@ COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force
 
 
 class _TurnedWrench(NamedTuple):
-    """What is left of the misfit [m] with force sensors turned about their own z axes, `columns` names which."""
+    """What is left of the misfit [m] with force sensors turned about their own z axes, and of what moves of it;
+    `columns` names which."""
 
     misfit: float
+    moving: float
     degrees: int
     columns: str
 
@@ -62,7 +65,12 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
         yield from found if unit else [_swapped()]
         return
-    if as_is <= NOTABLE and sides.lean <= LEANING:
+    turned = _turned_wrench(stance, sides) if max(as_is, sides.moving) > SHIFTED else None
+    # No wrong mass or place moves with the load: exchanged feet and turned sensors show in a small sway too.
+    far = FAR_BETTER * sides.moving if sides.moving > SHIFTED else 0.0
+    quarter = np.inf if turned is None else turned.moving
+    swapped, follows = other.moving < min(far, quarter), quarter < far
+    if as_is <= NOTABLE and sides.lean <= LEANING and not (swapped or follows):
         yield from _turned(stance, sides)
         return
     in_metres = sides.moment_arms.copy()
@@ -78,7 +86,6 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     joints = _reversed_joints(stance, sides) if certain or sides.lean > LEANING else {}
     left = {**joints, **_reversed_components(stance, sides)}
     best = min(left.values(), default=np.inf)
-    turned = _turned_wrench(stance, sides) if as_is > NOTABLE else None
     least = min(best, exchanged)
     if certain and (pair := _exchanged_joints(stance, sides, min(least, world.misfit))) is not None:
         text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
@@ -88,9 +95,13 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text += f"{100 * world.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
         valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
         yield Finding("wrench_turned", f"{text} ({valid})")
-    elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
+    elif (swapped or (as_is > NOTABLE and exchanged < BETTER * as_is)) and exchanged < best + ALIKE * as_is:
         yield _swapped(f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else "")
-    elif turned is not None and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is):
+    elif (
+        turned is not None
+        and (follows or as_is > NOTABLE)
+        and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is)
+    ):
         text = f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
         text += f" gravity to {100 * turned.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
         yield Finding("wrench_turned", f"{text} (check the sensors' rpy in the robot file)")
@@ -157,7 +168,7 @@ def _turned_wrench(stance: Stance, sides: StanceSides) -> _TurnedWrench | None:
         for degrees in QUARTERS:
             trial = stance.turned_wrenches(places, degrees).sides()
             if trial.moving < BETTER * moving:
-                found.append(_TurnedWrench(trial.misfit, degrees, columns))
+                found.append(_TurnedWrench(trial.misfit, trial.moving, degrees, columns))
     return min(found, default=None)
 
 

@@ -153,4 +153,19 @@ def test_a_joint_that_moves_no_sole_closes_no_chain() -> None:
     assert orientation is not None
     wrenches = {name: walk.wrench(foot.wrench.name)[rows] for name, foot in twin.feet.items()}
     stand = _Stand(twin, orientation[rows], walk.positions(twin)[rows], wrenches)
-    assert _own_angle(stand, "RARM_JOINT0", "right") == (0.0, False)
+    assert _own_angle(stand, "RARM_JOINT0", "right", {}) == (0.0, False)
+
+
+def test_what_rounding_of_the_other_encoders_makes_of_a_joint_is_no_motion_of_it() -> None:
+    """A hip's step of 12 bits moves a sole by a millimetre, which an ankle close above it would need many steps for."""
+    twin, step = hrp2.robot(), 2 * np.pi / 2**12
+    walk = walked().select(walked().time < 2.0)
+    positions = np.tile(walk.positions(twin)[:1], (len(walk), 1))
+    positions[::2, twin.joint_names.index("LLEG_JOINT2")] += step
+    orientation = walk.orientation(twin.required_imu.name)
+    assert orientation is not None
+    wrenches = {name: walk.wrench(foot.wrench.name) for name, foot in twin.feet.items()}
+    stand = _Stand(twin, np.tile(orientation[:1], (len(walk), 1)), positions, wrenches)
+    assert _own_angle(stand, "LLEG_JOINT4", "left", {})[0] > 4 * step
+    assert _own_angle(stand, "LLEG_JOINT4", "left", {"LLEG_JOINT2": step / 3})[0] > 4 * step
+    assert _own_angle(stand, "LLEG_JOINT4", "left", {"LLEG_JOINT2": step}) == (0.0, False)

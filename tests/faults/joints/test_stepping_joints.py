@@ -70,3 +70,12 @@ def test_an_encoder_that_was_not_recorded_for_a_while_is_none_that_stands(
     assert not list(
         check_stepping_joints(robot, gone.with_columns({"joint.left_ankle_pitch.position": values}))
     )
+
+
+def test_a_foot_that_bounces_as_it_lands_makes_no_step(robot: RobotModel, log: MotionLog) -> None:
+    """Its coarse encoder stands between two steps of its own for a fifth of a second, while the other leg turns."""
+    forces = [f"wrench.{robot.feet['left'].wrench.name}.force.{axis}" for axis in "xyz"]
+    bounces = ((log.time > 8.1) & (log.time < 8.15)) | ((log.time > 10.5) & (log.time < 10.55))
+    bouncing = log.with_columns({name: np.where(bounces, 0.0, log.column(name)) for name in forces})
+    assert not list(check_stepping_joints(robot, held(bouncing, ["left_ankle_pitch"], 10.4, 11.3)))
+    assert list(check_stepping_joints(robot, held(bouncing, ["left_ankle_pitch"], 5.0, 11.6)))

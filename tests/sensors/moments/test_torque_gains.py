@@ -15,7 +15,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moments.law_rows import law_rows
-from plantar.sensors.moments.moment_errors import moment_errors
+from plantar.sensors.moments.moment_errors import moment_errors, row_products
 from plantar.sensors.moments.moment_fit import MomentFit, Part, solved
 from plantar.sensors.moments.sensor_errors import prior_deviations
 from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes, torque_gains
@@ -223,6 +223,22 @@ def test_the_noise_of_an_accelerometer_makes_no_link_lighter_and_no_torque_too_l
             own = 4 + foot * (7 + len(channels))
             shares.append(fit.values[[foot, own, own + 7 + channels.index((4, 4))]].sum())
     assert abs(np.mean(shares)) < 0.006
+
+
+def test_coarse_encoders_make_no_link_lighter(twin: RobotModel, sweep: MotionLog) -> None:
+    """Accelerations of steps of 12 bits grow with the frequency: taken for white, their noise is most of what links
+    move, and with links that seem to stand still all gains are as good as any."""
+    step = 2 * np.pi / 2**12
+    names = [name for name in sweep.columns if name.endswith(".position")]
+    coarse = {name: step * np.round(sweep.column(name) / step) for name in names}
+    assert found(twin, sweep.with_columns(coarse), {}) == {}
+    links = []
+    for log in (sweep, sweep.with_columns(coarse)):
+        [residual] = newton_euler_residuals(twin, log)
+        products = row_products(twin, residual, False).products.sum(axis=1)
+        links.append(np.diagonal(products, axis1=1, axis2=2)[:, 1 + len(prior_deviations(twin)) : -12])
+    moved = links[0] > 0.001 * links[0].max(axis=1, keepdims=True)
+    np.testing.assert_allclose((links[1] / links[0])[moved], 1.0, atol=0.15)
 
 
 def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog) -> None:

@@ -33,6 +33,9 @@ SURELY = 0.8  # share of the samples
 EACH = 0.2  # of the samples, in which each foot of a robot that steps carries it
 LEAST_ANGLE = 0.01  # rad: less harms no fit of bushes that turn by degrees
 ENCODER_STEPS = 5.0  # of the joint's own encoder, likewise: between two of them it stands
+# Of what the encoders' steps of all joints together make of the angle: rounding of a dozen joints stays within it.
+ROUNDING = 2.0
+FINEST = 0.05  # of the changes of a position, that are no larger than its encoder's step where that is coarse
 LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, and do little harm
 SAMPLES = 500  # spread over that time: enough to tell
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
@@ -102,6 +105,10 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         some = spread_out(standing, SAMPLES)
         yield from _exchanged_legs(stand(some), run_numbers(known)[some])
     stands: dict[tuple[int, int], _Stand] = {}
+    finest = {
+        joint: _encoder_step(positions[:, robot.joint_names.index(joint)], FINEST)
+        for _, joint in compress(joints, recorded)
+    }
     for foot, joint in compress(joints, recorded):
         values = positions[:, robot.joint_names.index(joint)]
         stretch = _longest_at_one_value(values, known)
@@ -111,7 +118,7 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if (stretch.start, stretch.stop) not in stands:
             rows = slice(stretch.start, stretch.stop, max(1, length // SAMPLES))
             stands[stretch.start, stretch.stop] = stand(rows)
-        angle, sure = _own_angle(stands[stretch.start, stretch.stop], joint, foot)
+        angle, sure = _own_angle(stands[stretch.start, stretch.stop], joint, foot, finest)
         if angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
             continue
         when = f"t = {clock(log.time[stretch.start])} to {clock(log.time[stretch.stop - 1])} s"
@@ -170,11 +177,12 @@ def _carried_from_above(stand: _Stand, carrying: NDArray[np.intp]) -> Iterator[F
         )
 
 
-def _encoder_step(values: Array) -> float:
-    """The usual change of a position from sample to sample where it changes; 0 where it never does."""
+def _encoder_step(values: Array, share: float = 0.5) -> float:
+    """The change of a position from sample to sample, where it changes, that a share of its changes are below, as
+    usual the median; 0 where it never does."""
     steps = np.abs(np.diff(values))
     steps = steps[np.isfinite(steps) & (steps > 0)]
-    return float(np.median(steps)) if steps.size else 0.0
+    return float(np.quantile(steps, share)) if steps.size else 0.0
 
 
 def _longest_at_one_value(values: Array, known: Mask) -> slice:
@@ -183,10 +191,10 @@ def _longest_at_one_value(values: Array, known: Mask) -> slice:
     return longest_run(same)
 
 
-def _own_angle(stand: _Stand, name: str, foot: str) -> tuple[float, bool]:
+def _own_angle(stand: _Stand, name: str, foot: str, finest: Mapping[str, float]) -> tuple[float, bool]:
     """How far a joint of this foot's leg moved [rad] where that closes the chain, else 0; whether the torque follows.
 
-    The soles' heights do not count: bushes give way under load.
+    The soles' heights do not count: bushes give way under load. finest: the encoders' steps [rad] by joint.
     """
     joint, as_read = stand.robot.joint_names.index(name), stand.as_read
     apart = _soles(as_read)
@@ -199,13 +207,22 @@ def _own_angle(stand: _Stand, name: str, foot: str) -> tuple[float, bool]:
     left = apart + moves * angle[:, None]
     total = float(np.sum(apart**2))
     missed = float(np.sqrt(np.sum(left**2) / total)) if total > 0 else np.inf
-    if missed > CLOSED:
+    if missed > CLOSED or np.ptp(angle) < ROUNDING * _of_rounding(stand, moves, finest):
         return 0.0, False
     closed = stand.turned(joint, angle)[foot]
     axis = int(np.argmax(np.std(closed.deflection - as_read[foot].deflection, axis=0)))
     before, after = (_unexplained(state, axis) for state in (as_read[foot], closed))
     follows = after < min(FOLLOWS, FOLLOWED * before)
     return (float(np.ptp(angle)) if follows or missed < SURELY_CLOSED else 0.0), follows
+
+
+def _of_rounding(stand: _Stand, moves: Array, finest: Mapping[str, float]) -> float:
+    """What the encoders' steps by joint make of the angle [rad] of a joint by which the soles move so, (n, 3) [m]."""
+    apart, angles = _soles(stand.as_read), []
+    for name, step in finest.items():
+        moved = (_soles(stand.turned(stand.robot.joint_names.index(name), STEP)) - apart) / STEP
+        angles.append(step * np.median(np.abs(np.sum(moved * moves, axis=1)) / np.sum(moves**2, axis=1)))
+    return float(np.linalg.norm(angles))
 
 
 def _soles(states: Mapping[str, BushState]) -> Array:

@@ -18,6 +18,7 @@ from plantar.signals.footfalls import footfalls
 from plantar.signals.segments import runs
 
 FEWEST = 2  # times that the foot lands or leaves: a whole step or stance of it
+WHOLE = 0.5  # of a usual swing or stance: a foot that bounces as it lands makes no step
 
 
 def check_stepping_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -49,10 +50,17 @@ def check_stepping_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding
 
 
 def _longest_step(position: Array, changes: NDArray[np.intp]) -> slice | None:
-    """The longest run of samples at one position in which the foot lands or leaves often enough."""
+    """The longest run of samples at one position in which the foot lands or leaves often enough for a step."""
     still = [slice(run.start, run.stop + 1) for run in runs(np.diff(position) == 0)]
     ends = np.searchsorted(changes, [(run.start, run.stop) for run in still]).reshape(-1, 2)
-    steps = [run for run, (begun, over) in zip(still, ends, strict=True) if over - begun >= FEWEST]
+    spans = np.sort(np.diff(changes))
+    until = np.cumsum(spans)
+    shortest = WHOLE * spans[np.searchsorted(until, until[-1] / 2)]  # half of the time is in longer ones
+    steps = [
+        run
+        for run, (begun, over) in zip(still, ends, strict=True)
+        if over - begun >= FEWEST and run.stop - run.start > shortest
+    ]
     return max(steps, key=lambda run: run.stop - run.start, default=None)
 
 

@@ -23,12 +23,14 @@ from plantar.signals.filters import low_pass, without_slow_cosines
 
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
+QUICKER = 4.0  # Hz: where noise grows from below to above it, it is that of encoders' accelerations
 TOGETHER = 32  # columns that are made at a time
 
 
 class LawRow(NamedTuple):
     """One row of Newton's law: `signals` (n, c + 1) each `period` [s] are what it misses and its columns; `noise`
-    (n, c + 1) is what of them is too quick for a robot, zero of columns with little of it, (0, c + 1) of a walk."""
+    (2, n, c + 1) is what of them is too quick for a robot, below and above QUICKER: zero of columns with little of it,
+    (2, 0, c + 1) of a walk."""
 
     signals: Array
     period: float
@@ -76,14 +78,16 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
         noisy = np.zeros(len(signals), dtype=bool)
         noisy[:of_sensors] = noisy[-len(by_links) - len(zeros) : -len(zeros)] = True
         slow = np.empty((len(missing), len(signals)))
-        noise = np.zeros((0 if steps else len(missing), len(signals)), dtype=np.float32)
+        noise = np.zeros((2, 0 if steps else len(missing), len(signals)), dtype=np.float32)
         for first in range(0, len(signals), TOGETHER):
             some = slice(first, first + TOGETHER)
             # Without what postures and drifting zeros do to them.
             quick = without_slow_cosines(np.column_stack(signals[some]), period, SLOW)
             slow[:, some] = quick if steps else low_pass(quick, period, BAND)
-            if not steps:
-                noise[:, some] = (quick - slow[:, some]) * noisy[some]
+            if not steps and noisy[some].any():
+                fast = (quick - slow[:, some]) * noisy[some]
+                noise[0][:, some] = low_pass(fast, period, QUICKER)
+                noise[1][:, some] = fast - noise[0][:, some]
         yield LawRow(slow, period, noise)
 
 

@@ -11,7 +11,7 @@ from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 from plantar.sensors.load_errors import APART
 from plantar.sensors.moments.elimination import beside, coefficients
-from plantar.sensors.moments.law_rows import BAND, law_rows
+from plantar.sensors.moments.law_rows import BAND, QUICKER, law_rows
 from plantar.sensors.moments.sensor_errors import ANOTHER_UNIT, prior_deviations, zero_deviations
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.signals.filters import gain
@@ -61,8 +61,8 @@ def row_products(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) 
     for row in law_rows(robot, residual, steps):
         stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * row.period)))
         own = row.signals[::stride]
-        with_noise, below = _products(own), _below_to_above(row.period) / stride
-        products.append(with_noise - below * _products(row.noise))
+        with_noise, noise = _products(own), np.array([_products(band) for band in row.noise])
+        products.append(with_noise - np.tensordot(_below_to_above(row.period) / stride, noise, 1))
         power.append(with_noise.sum(axis=0) / len(own))
         share = stride * row.period / APART
     return RowProducts(np.array(products), np.array(power), share, zero_deviations(robot))
@@ -92,12 +92,15 @@ def _products(columns: NDArray[Any]) -> Array:
     return np.array([part.T @ part for part in np.array_split(columns, PARTS)])
 
 
-def _below_to_above(period: float) -> float:
-    """Power of white noise below BAND over that above it, behind the filters that both have passed.
+def _below_to_above(period: float) -> Array:
+    """Factors (2,) of the power of noise above BAND, below and above QUICKER, that make its power below BAND.
 
     The feet's own readings are in the columns and in what is missing: their noise, multiplied with itself, would pass
-    for arms of centimetres. Above BAND is hardly anything else.
+    for arms of centimetres. Above BAND is hardly anything else. The noise of forces and IMU is white, that of
+    encoders' accelerations grows with the fourth power of the frequency; the factors are right for both.
     """
     hertz = np.linspace(0.0, 0.5 / period, 2000)
-    passed, slow = (gain(hertz, period, cutoff) for cutoff in (CUTOFF, BAND))
-    return float(np.sum((passed * slow) ** 2) / np.sum((passed * (1 - slow)) ** 2))
+    passed, slow, middle = (gain(hertz, period, cutoff) for cutoff in (CUTOFF, BAND, QUICKER))
+    bands = passed * [slow, (1 - slow) * middle, (1 - slow) * (1 - middle)]
+    below, *above = (bands**2) @ np.column_stack([np.ones_like(hertz), hertz**4])
+    return np.linalg.solve(np.array(above).T, below)
