@@ -39,7 +39,8 @@ def breaking(step: Callable[..., Any], error: Exception) -> Callable[..., Any]:
     """The step, which raises where it is about the broken axis."""
 
     def broken(*given: Any) -> Any:
-        about = [(one.foot, one.axis) for one in given if hasattr(one, "axis")]
+        fits = [getattr(one, "fit", one) for one in given]
+        about = [(fit.foot, fit.axis) for fit in fits if hasattr(fit, "axis")]
         if BROKEN in about or given[1:3] == BROKEN:
             raise error
         return step(*given)
@@ -113,6 +114,7 @@ def test_one_axis_that_differs_alone_says_nothing_of_the_others(
         for own in differ
     )
     monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: next(told))
+    monkeypatch.setattr(foot_fit, "Tangent", SimpleNamespace(of=lambda *_: None))
     robot = SimpleNamespace(uncertainty=Uncertainty(between_recordings=0.002))
     ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
     feet = [
@@ -132,6 +134,7 @@ def test_differences_that_hardly_show_are_none_of_a_robot_that_is_what_its_file_
     """Two recordings that are alike to 1 %, and a stiffness known to 0.01 %."""
     alike = AxisDifferences(Differences(np.zeros(1), np.array([[1e-4]])), 1e-4, frozenset("ab"))
     monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: alike)
+    monkeypatch.setattr(foot_fit, "Tangent", SimpleNamespace(of=lambda *_: None))
     robot = SimpleNamespace(uncertainty=EXACT if exact else Uncertainty())
     ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
     feet = [

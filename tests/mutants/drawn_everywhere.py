@@ -27,7 +27,7 @@ DRAWN_EVERYWHERE = (
         ("feet/regression/test_prediction.py",),
     ),
     Mutant(
-        "feet/regression/regression_data.py",
+        "feet/regression/tangent.py",
         "slopes of nonlinear parameters twice as steep",
         "/ (2 * steps)",
         "/ steps",

@@ -80,7 +80,7 @@ class StanceProblem:
 
     def solve(self) -> Solution:
         """The solution of all recordings."""
-        total, back = self._total, self._parts[1]
+        back, total = self._parts[1], self._total
         values, inverse = _solved(total)
         own = back[:, :, -1] - back[:, :, :-1] @ values
         return Solution(values, own, inverse, float(total[-1, -1] - values @ total[:-1, -1]))

@@ -20,7 +20,7 @@ from plantar.feet.fit.hidden_memory import NOT_EXCLUDED, SMALL, has_memory, only
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.regression.tangent import Tangent
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
@@ -133,7 +133,10 @@ def _known(fit: AxisFit, foot: FittedFoot) -> bool:
         return True
     if NORMAL95 * float(fit.std[0]) >= WEAK_WIDTH * abs(float(fit.values[0])):
         return False
-    return _steps(foot) or not mostly_error(tangent_blocks(foot.thin.fitted, fit), float(fit.equivalent[0]))
+    if _steps(foot):
+        return True
+    tangent = Tangent.of(fit, foot.thin.fitted, False)
+    return not mostly_error(tangent.blocks, float(fit.equivalent[0]))
 
 
 def _steps(foot: FittedFoot) -> bool:

@@ -16,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from plantar.contact.phases import SUPPORTS
 from plantar.conventions import Array
 from plantar.results.residuals import Track
 from plantar.signals.medians import median
@@ -28,8 +29,6 @@ COARSEST: Final = 1023
 TICK: Final = 1e-6
 EFFORT: Final = 2
 """Of deflating, of 9: noise is most of what there is, and twice the time would save a twentieth of the room."""
-SUPPORTS: Final = ("double", "single", "air", "transition")
-"""Support phases by their number; any other name counts as a transition."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def _channels(track: Track) -> Mapping[str, Array]:
 
 
 def _flags(track: Track) -> NDArray[np.uint8]:
-    """Bit 0: used; the bits above: the support's number."""
+    """Bit 0: used; the bits above: the support's number; any other name counts as a transition."""
     support = np.full(track.time.size, len(SUPPORTS) - 1, dtype=np.uint8)
     for code, name in enumerate(SUPPORTS):
         support[track.support == name] = code

@@ -67,18 +67,16 @@ class NewtonEulerResidual:
         pair, rows = self.pair, slice(None, None, stride)
         measured, rate, predicted = pair.measured[rows], pair.rate[rows], pair.predicted[rows]
         kept = slice(self.kept.start, self.kept.stop, (self.kept.step or 1) * stride)
-        return NewtonEulerResidual(
-            Pair(pair.label, measured, rate, predicted, stride * pair.period),
-            self.measured[:, rows],
-            self.rates[:, rows],
-            self.by_encoders[rows],
-            self.readings[rows],
-            replace(self.signals),
-            kept,
-            self.parameters,
-            self.changes[rows],
-            self.stands,
-            self.encoders_late,
+        return replace(
+            self,
+            pair=Pair(pair.label, measured, rate, predicted, stride * pair.period),
+            measured=self.measured[:, rows],
+            rates=self.rates[:, rows],
+            by_encoders=self.by_encoders[rows],
+            readings=self.readings[rows],
+            signals=replace(self.signals),
+            kept=kept,
+            changes=self.changes[rows],
         )
 
     def with_bands(self) -> NewtonEulerResidual:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -281,10 +283,11 @@ def test_a_drift_is_beside_offsets_of_each_recording_alone(
 ) -> None:
     told: list[bool] = []
 
-    def blocks(recordings: object, fit: object, *, drift: bool) -> list[object]:
+    def blocks(*_: object, drift: bool, fit: object) -> list[object]:
         told.append(drift)
         return []
 
-    monkeypatch.setattr("plantar.feet.regression.tangent.tangent_blocks", blocks)
-    assert Tangent.of(None, [], shared).shared is shared  # type: ignore[arg-type]
+    monkeypatch.setattr("plantar.feet.regression.tangent.blocks_of", blocks)
+    fit: Any = SimpleNamespace(foot=FOOT, axis="pitch", shape=np.zeros(0))
+    assert Tangent.of(fit, [], shared).shared is shared
     assert told == [not shared]

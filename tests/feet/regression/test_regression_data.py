@@ -9,7 +9,8 @@ from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import blocks_of, tangent_blocks
+from plantar.feet.regression.regression_data import blocks_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import MODELS
 
 STIFFNESS, COUNT = 400.0, 4000
@@ -45,7 +46,7 @@ def test_a_tangent_is_the_torques_slope_with_the_nonlinear_parameter() -> None:
         white_std=np.ones(4), offset_std={"sway": 0.0}, equivalent=(400.0, 20.0), choice=None, reason="",
     )  # fmt: skip
     recording = made_recording("sway", angle, 400.0 * angle, rate=rate)
-    (block,) = tangent_blocks([recording], fit)
+    (block,) = Tangent.of(fit, [recording], False).blocks
     slope = -friction * rate / slip_rate**2 / np.cosh(rate / slip_rate) ** 2
     inner = slice(20, -20)  # ends of the filter
     expected = slope[recording.rows(FOOT)][inner]

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
-from plantar.estimation import interval95, relative_std_percent
+from plantar.estimation import relative_std_percent
 from plantar.estimation.orthonormal import without
 from plantar.estimation.slow_drift import drift_basis, drift_beside
 from plantar.feet.assess.left_out import why_unseen
@@ -46,16 +46,14 @@ def axis_rows(
     rows = []
     for place, term in enumerate(fit.names):
         value, std = float(fit.numbers[place]), float(fit.std[place])
-        interval = interval95(value, std, float(fit.freedom[place]))
+        interval = fit.interval(place)
         if place < 2:
             verdict, reason, advice = judge(fit.foot, fit.axis, term, value, interval, evidence)
         else:
             verdict, reason, advice = judge_term(value, interval, evidence)
             if term == "slip_torque" and verdict == "usable" and slid_back(fit, recordings) < ROUND_SLID:
-                verdict, reason = (
-                    "weak",
-                    f"the rubber slips one way only: {SWAY[fit.axis]} by larger angles",
-                )
+                verdict = "weak"
+                reason = f"the rubber slips one way only: {SWAY[fit.axis]} by larger angles"
         unit = fit.model.unit(term, fit.axis)
         relative = relative_std_percent(value, float(fit.white_std[place]))
         rows.append(

@@ -21,7 +21,8 @@ from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.model_columns import model_columns
-from plantar.feet.regression.regression_data import beside, blocks_of, recordings_of, tangent_blocks
+from plantar.feet.regression.regression_data import beside, blocks_of, recordings_of
+from plantar.feet.regression.tangent import Tangent
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.signals.mean_changes import mean_changes
@@ -58,8 +59,8 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
     if not isinstance(fit.model, KelvinVoigt):
         # Beside a true memory, its own misfit shows a jump better. A memory that was made up for a jump leaves more
         # than the jump would; one that leaves less is what moves the means of spring and damper's misfit.
-        own = tangent_blocks(recordings, fit)
-        law = fit_blocks(own)
+        tangent = Tangent.of(fit, recordings, False)
+        own, law = tangent.blocks, tangent.least_squares
         left = {label: float(residual @ residual) for label, residual in law.residuals.items()}
         jumps = {label: jump for label, jump in jumps.items() if jump.left < left[label]}
         jumps = _jumps(law, own, recordings, fit.foot) | jumps

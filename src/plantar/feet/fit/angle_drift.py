@@ -15,12 +15,13 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import Block, effect_of, influences_of
+from plantar.estimation import effect_of, influences_of
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.model_columns import model_columns
-from plantar.feet.regression.regression_data import blocks_of, recordings_of, tangent_blocks
+from plantar.feet.regression.regression_data import blocks_of, recordings_of
+from plantar.feet.regression.tangent import Tangent
 
 ROUNDS = 6  # at most
 HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large
@@ -35,7 +36,7 @@ def beside_drift(
         drifts = {
             name: _halfway(fit.drifts.get(name), drift) for name, drift in _drifts(fit, recordings).items()
         }
-        if not _matters(fit, recordings, tangent_blocks(recordings, fit), drifts):
+        if not _matters(Tangent.of(fit, recordings, False), drifts):
             break
         fit = again(replace(fit, drifts=drifts))
     return fit
@@ -58,18 +59,14 @@ def _drifts(fit: AxisFit, recordings: Sequence[Recording]) -> dict[str, AngleDri
     return found
 
 
-def _matters(
-    fit: AxisFit, recordings: Sequence[Recording], blocks: Sequence[Block], drifts: Mapping[str, AngleDrift]
-) -> bool:
-    """Whether a number of the fit, whose `tangent_blocks` are given, would move by a share of its deviation with other
-    drifts."""
+def _matters(tangent: Tangent, drifts: Mapping[str, AngleDrift]) -> bool:
+    """Whether a number of the fit would move by a share of its deviation with other drifts."""
+    fit = tangent.fit
     other = replace(fit, drifts=drifts)
 
     def torque(recording: Recording, one: AxisFit) -> Array:
         columns = model_columns(recording, fit.foot, fit.axis, one)
         return np.asarray((columns @ fit.values)[recording.rows(fit.foot)])
 
-    changes = [
-        np.nan_to_num(torque(one, other) - torque(one, fit)) for one in recordings_of(blocks, recordings)
-    ]
-    return bool((np.abs(effect_of(influences_of(blocks), changes)) > NEGLIGIBLE * fit.std).any())
+    changes = [np.nan_to_num(torque(one, other) - torque(one, fit)) for one in tangent.recordings]
+    return bool((np.abs(effect_of(influences_of(tangent.blocks), changes)) > NEGLIGIBLE * fit.std).any())

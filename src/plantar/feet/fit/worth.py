@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.estimation import interval95
 from plantar.feet.fit.hidden_memory import NOT_EXCLUDED
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
@@ -22,10 +21,7 @@ def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
 
     fit: with the deviations of all that is unsure about robot and sensors.
     """
-    ends = [
-        interval95(float(fit.numbers[place]), float(fit.std[place]), float(fit.freedom[place]))
-        for place in range(2)
-    ]
+    ends = (fit.interval(place) for place in range(2))
     return all(low < alone < high for (low, high), alone in zip(ends, spring.numbers, strict=True))
 
 
@@ -39,11 +35,8 @@ def tells_no_more(fit: AxisFit, simpler: AxisFit) -> bool:
     alone = dict(zip(simpler.names, simpler.numbers, strict=True))
     if len(alone) == len(fit.names):  # another shape, no term
         return False
-    for name, value, std, freedom in zip(fit.names, fit.numbers, fit.std, fit.freedom, strict=True):
-        low, high = interval95(float(value), float(std), float(freedom))
-        if not low < alone.get(name, 0.0) < high:
-            return False
-    return True
+    ends = (fit.interval(place) for place in range(len(fit.names)))
+    return all(low < alone.get(name, 0.0) < high for name, (low, high) in zip(fit.names, ends, strict=True))
 
 
 def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
@@ -53,7 +46,7 @@ def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
 
     fit, spring: with the deviations of all that is unsure about robot and sensors.
     """
-    low, high = interval95(float(spring.numbers[0]), float(spring.std[0]), float(spring.freedom[0]))
+    low, high = spring.interval(0)
     far = abs(fit.numbers[0] - spring.numbers[0]) > USABLE_WIDTH * abs(spring.numbers[0])
     return bool(far and not low < fit.numbers[0] < high)
 

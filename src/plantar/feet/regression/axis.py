@@ -9,6 +9,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from plantar.conventions import NORMAL95, Array, Axis
+from plantar.estimation import interval95
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import BushModel
 from plantar.notes import Note
@@ -102,6 +103,10 @@ class AxisFit(FittedModel):
     @property
     def std(self) -> Array:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    def interval(self, place: int) -> tuple[float, float]:
+        """The 95 % interval of one of the `numbers`."""
+        return interval95(float(self.numbers[place]), float(self.std[place]), float(self.freedom[place]))
 
     def holds(self, moved: Array) -> bool:
         """Whether stiffness and damping that are `moved` (2,) stay within their intervals, or nearly where they are."""

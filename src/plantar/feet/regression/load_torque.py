@@ -68,7 +68,7 @@ def torque_of_angle(recording: Recording, fit: AxisFit, change: Array, little: f
     """Torque (N,) for each unit of what changes the bush's angle by `change` (N,) [rad]; 0 where that is NaN.
 
     Beside spring and damper a memory follows the angle, too: until it slips it is a spring, over a `little` of it. Of a
-    foot that steps it is left out, as are its states (`tangent_blocks`).
+    foot that steps it is left out, as are its states (`Tangent`).
     """
     torque = fit.values[0] * change + fit.values[1] * differentiate(change, recording.period)
     if len(fit.shape) and recording.stances[fit.foot] is None:

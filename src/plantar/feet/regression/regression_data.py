@@ -26,14 +26,11 @@ from plantar.feet.regression.load_torque import (
 from plantar.feet.regression.model_columns import (
     UNTURNED,
     Turn,
-    memory_path,
     model_columns,
     motion_of,
-    own_torque,
     path_of,
 )
 from plantar.model_selection.data_sets import DataSet, StepColumns
-from plantar.model_selection.variable_projection import SHAPE_STEP
 
 # Before any data, of where steps find the centre [m], how far the force sensor is turned about the vertical [rad], and
 # of its crosstalk [N.m/N]: aside anything (the torque of the load is its own), in height some millimetres of the robot
@@ -85,23 +82,6 @@ def blocks_of(
             )
         )
     return blocks
-
-
-def tangent_blocks(recordings: Sequence[Recording], fit: AxisFit, *, drift: bool = True) -> list[Block]:
-    """Eq. 6 linearised about a fit: its columns, then the torque's change with each nonlinear parameter, (n, k + s).
-
-    So what disturbs the torque moves these parameters too, and moves the others as much as they then allow. Of a foot
-    that steps, the columns alone: the states of its many stances leave little of such a change.
-    """
-    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=drift, fit=fit)
-    if len(fit.shape) == 0 or blocks[0].stances is not None:
-        return blocks
-    steps, slopes = SHAPE_STEP * fit.shape, list[Array]()
-    shapes = np.concatenate([fit.shape + np.diag(steps), fit.shape - np.diag(steps)])
-    for one in recordings_of(blocks, recordings):  # the states at the start held
-        torque = own_torque(one, fit, [memory_path(one, fit)], shapes)[one.rows(fit.foot)]
-        slopes.append((torque[:, : len(steps)] - torque[:, len(steps) :]) / (2 * steps))
-    return all_beside(blocks, slopes)
 
 
 def recordings_of(blocks: Sequence[Block], recordings: Sequence[Recording]) -> list[Recording]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final, Literal
 
@@ -192,22 +192,11 @@ def _merged(trends: Sequence[Change], time: Array) -> list[Change]:
     merged: list[Change] = []
     last_seen = 0
     for change in sorted(trends, key=lambda one: one.seen):
-        same = merged and np.sign(merged[-1].size) == np.sign(change.size)
-        if same and time[change.seen] - time[last_seen] < AGAIN:
+        again = time[change.seen] - time[last_seen] < AGAIN
+        last_seen = change.seen
+        if merged and again and np.sign(merged[-1].size) == np.sign(change.size):
             before = merged.pop()
-            change, last_seen = (
-                Change(
-                    "trend",
-                    min(before.first, change.first),
-                    before.seen,
-                    change.size,
-                    change.low,
-                    change.high,
-                ),
-                change.seen,
-            )
-        else:
-            last_seen = change.seen
+            change = replace(change, first=min(before.first, change.first), seen=before.seen)
         merged.append(change)
     return merged
 
