@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from plantar.campaign import scene
-from plantar.cli import compare, design, select
+from plantar.cli import compare, design, main, select
 from plantar.comparison import compare as comparison
 from plantar.design import paper_motions, story
 from plantar.design.paper_motions import PaperMotions
@@ -155,3 +155,16 @@ def test_design_like_the_paper_tells_the_best_motion_beside_the_best_set(
     assert ["foot", "axis", "parameter", "Tilt2", "best", "set"] in lines
     assert ["left", "pitch", "stiffness", "2.5", "1.25"] in lines
     assert "The best set: Squat, Tilt2." in printed
+
+
+def test_a_command_that_is_interrupted_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("plantar.cli.show.run", run)
+    with pytest.raises(SystemExit) as ended:
+        main(["show", "reference"])
+    assert ended.value.code == 130
+    assert capsys.readouterr().err == "plantar: interrupted\n"

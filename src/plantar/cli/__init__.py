@@ -120,6 +120,12 @@ def _called(arguments: list[str]) -> str:
 class _Command(TyperCommand):
     """Arguments as manuals write them: no braces around what is required, no types, which their help tells."""
 
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:  # typer would end without a word
+            _fail("plantar: interrupted", 130)
+
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         return ["[OPTIONS]", *(_written(one) for one in self.params if isinstance(one, TyperArgument))]
 
