@@ -187,6 +187,7 @@ def test_feet_that_are_swapped_in_a_small_sway(
     [
         (0.015, 0.046, 10.0, True), (0.015, 0.049, 10.0, False), (0.0061, 0.01, 10.0, True),
         (0.0059, 0.01, 10.0, False), (0.015, 0.04, 0.04, True), (0.03, 0.04, 0.079, False), (0.03, 0.04, 0.081, True),
+        (0.049, 0.01, 10.0, True), (0.051, 0.01, 10.0, False),
     ],
 )  # fmt: skip
 def test_sensors_that_turn_with_the_soles(
