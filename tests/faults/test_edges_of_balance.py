@@ -28,6 +28,7 @@ class Stub:
     tilt: np.ndarray = field(default_factory=lambda: UP)
     turn: float = 0.0
     moves: float = 0.1
+    below: float = 10.0
     imu = SimpleNamespace(name="chest")
 
     def sides(self) -> StanceSides:
@@ -47,6 +48,9 @@ class Stub:
 
     def world_wrenches(self) -> Stub:
         return Stub(self.world)
+
+    def sole_wrenches(self) -> Stub:
+        return Stub(self.below)
 
 
 def said(
@@ -176,6 +180,23 @@ def test_feet_that_are_swapped_in_a_small_sway(
     """Half of the misfit moves as read, and of what is left with the wrenches exchanged an eighteenth."""
     found = said(monkeypatch, Stub(misfit, exchanged=exchanged, moves=0.9))
     assert (found is not None and (found.code, found.fatal) == ("swapped_feet", True)) == told
+
+
+@pytest.mark.parametrize(
+    ("misfit", "below", "world", "told"),
+    [
+        (0.015, 0.046, 10.0, True), (0.015, 0.049, 10.0, False), (0.0061, 0.01, 10.0, True),
+        (0.0059, 0.01, 10.0, False), (0.015, 0.04, 0.04, True), (0.03, 0.04, 0.079, False), (0.03, 0.04, 0.081, True),
+        (0.049, 0.01, 10.0, True), (0.051, 0.01, 10.0, False),
+    ],
+)  # fmt: skip
+def test_sensors_that_turn_with_the_soles(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, below: float, world: float, told: bool
+) -> None:
+    """Half of the misfit moves as read, of what is left in other axes an eighteenth. What the world's axes leave too is
+    told as theirs, where the whole misfit shows them."""
+    found = said(monkeypatch, Stub(misfit, below=below, world=world, moves=0.9))
+    assert (found is not None and "turn with the soles" in found.text) == told
 
 
 @pytest.mark.parametrize(

@@ -86,3 +86,27 @@ def test_up_that_sways_in_another_direction_than_the_force_is_turned(degrees: fl
     size = np.degrees(np.sqrt(np.sum((tilts - tilts.mean(axis=0)) ** 2)))
     assert deviation == pytest.approx(0.2 * np.sqrt(2) / size, rel=0.3)
     assert angle == pytest.approx(np.radians(degrees), abs=3 * deviation)
+
+
+@pytest.mark.parametrize("rpy", [(0.0, 0.0, 0.0), (0.0, np.pi / 2, 0.0)])
+def test_sensors_below_the_rubber_are_turned_back_to_the_ankles(
+    tmp_path: Path, rpy: tuple[float, float, float]
+) -> None:
+    """Of a robot that faces along the world's x, level soles have the world's axes."""
+    mounting = Mounting(wrench=Frame((0.01, 0.0, -0.04), rpy))
+    robot = make_robot(tmp_path, mounting)
+    above = stance_of(robot, record(sway(duration=12.0), mounting))
+    assert above is not None
+    root, each, _ = above._posed
+    below = list[np.ndarray]()
+    for wrench, axes, foot in zip(above.wrenches, each, robot.feet.values(), strict=True):
+        mount = foot.wrench.placement.rotation
+        level = wrench.reshape(-1, 2, 3) @ (axes @ root.transpose(0, 2, 1)) @ mount
+        below.append(level.reshape(-1, 6))
+    as_read = replace(above, wrenches=below)
+    right = above.sides().moment_arms.sum(axis=(1, 2))
+    wrong, back = (
+        one.sides().moment_arms.sum(axis=(1, 2)) - right for one in (as_read, as_read.sole_wrenches())
+    )
+    assert usual(wrong) > 0.002
+    assert usual(back) < 0.05 * usual(wrong)

@@ -155,6 +155,7 @@ def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
     stance.sides.return_value = as_read
     stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left, moving=0.1)
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
+    stance.sole_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "_turned_wrench", lambda *_: None)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     found = Finding("torque_unit", "columns 'wrench.*.torque.*': torques 8.4 times as large", True)
@@ -182,6 +183,7 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     )
     stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=0.02, moving=0.1)
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
+    stance.sole_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: {})

@@ -120,6 +120,20 @@ class Stance:
             turned.append(parts.reshape(-1, 6))
         return self._feeling(turned)
 
+    def sole_wrenches(self) -> Stance:
+        """What the sensors read if they turn with soles that stand level, below the rubber, and not with the ankles."""
+        root, each, _ = self._posed
+        turned = list[Array]()
+        for wrench, axes, foot in zip(self.wrenches, each, self.robot.feet.values(), strict=True):
+            sensor, sole = (
+                self.robot.frame(one)[1].rotation for one in (foot.wrench.placement, foot.sole.placement)
+            )
+            up, upright = (axes @ root[:, 2, :, None])[..., 0], sensor.T @ sole[:, 2]
+            turn = np.cross(upright, up)  # from the sole's axis to the vertical, of soles that lean little
+            parts = wrench.reshape(-1, 2, 3)
+            turned.append((parts + np.cross(turn[:, None], parts)).reshape(-1, 6))
+        return self._feeling(turned)
+
     def _feeling(self, wrenches: list[Array]) -> Stance:
         """The same poses, which are not found again, with other wrenches."""
         other = replace(self, wrenches=wrenches)

@@ -58,8 +58,9 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     sides = stance.sides()
     as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
     world = stance.world_wrenches().sides()
-    # Wrenches in other axes look like torques of another size.
-    turning = world.moving < BETTER * sides.moving
+    # Wrenches in other axes look like torques of another size. No rubber bends so far that soles explain more.
+    below = stance.sole_wrenches().sides().moving if as_is < CERTAIN_MOMENT_ARM else np.inf
+    turning = min(world.moving, below) < BETTER * sides.moving
     if not turning and (found := list(torque_unit(robot, log, sides))):
         # Moments of exchanged forces are so large that right torques look too small.
         unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
@@ -70,6 +71,13 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     far = FAR_BETTER * sides.moving if sides.moving > SHIFTED else 0.0
     quarter = np.inf if turned is None else turned.moving
     swapped, follows = other.moving < min(far, quarter), quarter < far
+    in_world = (
+        as_is > NOTABLE and world.moving * BETTER < below
+    )  # of a robot that faces along the world's x alike
+    if below < min(far, other.moving, quarter) and not in_world:
+        text = "columns 'wrench.*': read as in axes that turn with the soles, the wrenches balance gravity far better"
+        yield Finding("wrench_turned", f"{text} (valid: in axes that turn with the ankles, above the rubber)")
+        return
     if as_is <= NOTABLE and sides.lean <= LEANING and not (swapped or follows):
         yield from _turned(stance, sides)
         return
