@@ -142,7 +142,8 @@ def test_an_element_that_slips_one_way_alone_may_be_larger(
     rows = rows_of(
         recording(), replace(fit_of(Elastoplastic(), (400.0, 20.0, 40.0)), covariance=np.eye(4) * 1e-9)
     )
-    assert [row.verdict for row in rows] == ["usable", "usable", verdict, verdict]
+    assert [row.verdict for row in rows] == [verdict, "usable", verdict, verdict]
+    assert all(("slips one way only" in rows[place].reason) is (verdict == "weak") for place in (0, 2))
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.9, "usable"), (1.1, "weak")])

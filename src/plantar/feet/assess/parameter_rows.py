@@ -51,9 +51,14 @@ def axis_rows(
             verdict, reason, advice = judge(fit.foot, fit.axis, term, value, interval, evidence)
         else:
             verdict, reason, advice = judge_term(value, interval, evidence)
-            if term == "slip_torque" and verdict == "usable" and slid_back(fit, recordings) < ROUND_SLID:
-                verdict = "weak"
-                reason = f"the rubber slips one way only: {SWAY[fit.axis]} by larger angles"
+        # What the slipping part does not have, the spring has.
+        if (
+            term in ("stiffness", "slip_torque")
+            and verdict == "usable"
+            and slid_back(fit, recordings) < ROUND_SLID
+        ):
+            verdict = "weak"
+            reason = f"the rubber slips one way only: {SWAY[fit.axis]} by larger angles"
         unit = fit.model.unit(term, fit.axis)
         relative = relative_std_percent(value, float(fit.white_std[place]))
         rows.append(
