@@ -19,6 +19,7 @@ BETTER = 0.5  # share of the misfit that must be left after the change
 FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 SHIFTED = 0.003  # m: what moves by less may be noise of the forces
+LEANT = 0.006  # m: what moves by less with the soles' lean may be mounts that are turned by a degree
 ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
@@ -74,7 +75,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     in_world = (
         as_is > NOTABLE and world.moving * BETTER < below
     )  # of a robot that faces along the world's x alike
-    if below < min(far, other.moving, quarter) and not in_world:
+    if sides.moving > LEANT and below < min(far, other.moving, quarter) and not in_world:
         text = "columns 'wrench.*': read as in axes that turn with the soles, the wrenches balance gravity far better"
         yield Finding("wrench_turned", f"{text} (valid: in axes that turn with the ankles, above the rubber)")
         return
