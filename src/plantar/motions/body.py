@@ -20,8 +20,8 @@ from plantar.robot.model import Placement, RobotModel
 CHEST = "plantar.chest"
 REACHED = 1e-3  # m: how far a foot or the chest may be from where it should be
 STEPS = 3  # Gauss-Newton steps from one knot to the next
-AT_LIMIT = 0.01  # rad
-BENT = 0.5  # rad
+AT_LIMIT = 0.01  # rad from a limit: a joint stands at it
+BENT = 0.5  # rad at most, by which joints of the legs are bent before a posture is looked for
 MOVED = 0.1  # rad: less is no bending
 
 
@@ -123,11 +123,8 @@ class Body:
         numbers = {self.model.joints[joint].idx_q: joint for joint in self.leg_joints}
         at = places[np.minimum(q[places] - low, high - q[places]) < AT_LIMIT]
         names = [self.model.names[numbers[place]] for place in at]
-        return (
-            f", with {listing(names)} at {'its limit' if len(names) == 1 else 'their limits'}"
-            if names
-            else ""
-        )
+        limits = "its limit" if len(names) == 1 else "their limits"
+        return f", with {listing(names)} at {limits}" if names else ""
 
     def shifted(self, q: Array, posture: Mapping[str, float]) -> Array:
         """A copy of `q` with some joints set."""

@@ -14,11 +14,8 @@ from plantar.conventions import Array
 from plantar.errors import MotionError
 from plantar.motions.body import CHEST, REACHED, Body
 
-KNEE_BENDS = (
-    0.94,
-    0.96,
-    0.98,
-)  # of the straight leg's height, where no posture is given: tried in this order
+# Of the straight leg's height, where no posture is given: tried in this order.
+KNEE_BENDS = (0.94, 0.96, 0.98)
 LIFTED = 0.45  # rad, by which the joints of a leg bend further while its foot is lifted with a level sole
 STEP_ASIDE = 0.05  # m, the right leg to the right (B)
 STEP_FORWARD = 0.10  # m, the right leg forward (C)

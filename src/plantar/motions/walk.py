@@ -22,7 +22,7 @@ from plantar.motions.track import splined
 
 KNOTS = 50.0  # Hz: a swing of 0.5 s has 25
 ITERATIONS = 2  # Gauss-Newton steps a knot
-# Of them before the first: a robot without a posture of its own stands with its pelvis as it came.
+# Of them before the first: in a posture of its own a robot stands with its pelvis as it came.
 SETTLED = 60
 CORRECTIONS = 2  # times the pendulum is corrected for the limbs that it does not know
 
