@@ -14,7 +14,7 @@ SENSOR_FAULTS = (
         "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("faults/joints/test_closed_chain.py",),
     ),
     Mutant(
-        "faults/standing.py", "force sensors are turned one at a time only",
+        "faults/stance_changes.py", "force sensors are turned one at a time only",
         "{**ways, \"columns 'wrench.*'\": [*range(len(sensors))]}", "ways", ("faults/test_standing.py",),
     ),
     Mutant(
