@@ -186,14 +186,16 @@ def prepare_unseen(
     delay: SensorDelay,
     compliance: Mapping[str, float],
     progress: Progress,
+    bends: Array | None = None,
 ) -> list[Recording]:
-    """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N]."""
+    """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N], and
+    by which joints `bends` (joints,) [rad/(N.m)]."""
     looks = looked_at(robot, logs, False)
     if not looks:
         return []
     check_names([look.log for look in looks])
     looks, _ = _on_time(robot, looks, False)
-    recordings = _recordings(robot, looks, 0, settings, delay, progress).recordings
+    recordings = _recordings(robot, looks, 0, settings, delay, progress, bends).recordings
     return [moved_centre(recording, compliance) for recording in recordings]
 
 

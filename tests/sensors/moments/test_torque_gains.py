@@ -17,7 +17,7 @@ from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moments.law_rows import law_rows
 from plantar.sensors.moments.moment_errors import moment_errors, row_products
 from plantar.sensors.moments.moment_fit import MomentFit, Part, solved
-from plantar.sensors.moments.sensor_errors import prior_deviations
+from plantar.sensors.moments.sensor_errors import compliance_columns, prior_deviations
 from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.resampling import shifted
@@ -182,7 +182,8 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     told = replace(twin, imu=replace(twin.imu, placement=turned))
     [residual] = newton_euler_residuals(told, sweep)
     values, _ = solved([moment_errors(told, residual, False)], prior_deviations(told))
-    np.testing.assert_allclose(values[-9:-6], -turn, atol=0.004)
+    mount = compliance_columns(told).start
+    np.testing.assert_allclose(values[mount - 3 : mount], -turn, atol=0.004)
     assert torque_gains(told, fit_moments(told, [residual], ())) == {}
 
 
@@ -222,7 +223,7 @@ def test_the_noise_of_an_accelerometer_makes_no_link_lighter_and_no_torque_too_l
         for foot in range(2):  # pitch: alone, with all channels, and with its own one
             own = 4 + foot * (7 + len(channels))
             shares.append(fit.values[[foot, own, own + 7 + channels.index((4, 4))]].sum())
-    assert abs(np.mean(shares)) < 0.006
+    assert abs(np.mean(shares)) < 0.008
 
 
 def test_coarse_encoders_make_no_link_lighter(twin: RobotModel, sweep: MotionLog) -> None:

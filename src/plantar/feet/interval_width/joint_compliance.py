@@ -58,7 +58,9 @@ def _bending(robot: RobotModel, recording: Recording, ways: Array) -> dict[str, 
     [rad], filtered as they are."""
     if NAME not in recording.kept:
         log, positions = recording.log, recording.log.positions(robot)
-        wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
+        wrenches = np.hstack(
+            [foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()]
+        )
         torques = np.nan_to_num(leg_torques(robot, positions, wrenches))
         orientation, rates = attitude(log, robot.required_imu, [])
         still = np.zeros_like(rates)

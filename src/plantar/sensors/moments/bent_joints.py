@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import GRAVITY, NORMAL95, Array
+from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array
 from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -20,8 +20,8 @@ from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
 from plantar.sensors.moments.sensor_errors import compliance_columns
 
 BENT = "joints_bend"
-# rad, with the robot's weight at a metre: less passes for none. Simulated walks of stiff joints show up to 0.005.
-USUAL = 0.005
+# rad, with the robot's weight at a metre: less passes for none. A URDF's legs that are a little too short do as much.
+USUAL = 0.004
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
 
@@ -41,6 +41,11 @@ class JointBending(NamedTuple):
     def found(self) -> bool:
         """Whether logs are to be put right."""
         return bool(self.compliances.any())
+
+    def by_joint(self, robot: RobotModel) -> dict[str, float]:
+        """The compliance of each joint that logs are put right by."""
+        pairs = zip(robot.joint_names, self.compliances.tolist(), strict=True)
+        return {name: value for name, value in pairs if value}
 
     @classmethod
     def told(cls, robot: RobotModel) -> JointBending:
@@ -75,7 +80,7 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
     size = robot.uncertainty.joint_compliance
     unsure = [*parts, Part((USUAL / load) ** 2 * alike, MOST_FREEDOM)]
     deviations = np.sqrt(np.sum([np.diag(one.covariance) for one in unsure], axis=0))
-    gives_way = mean > 0 and bool((values > -NORMAL95 * deviations).all())  # no joint bends against its load
+    gives_way = mean > 0 and bool((values > -SHOWN * deviations).all())  # no joint bends against its load
     # Of joints that are alike, the mean shows more.
     shown = np.append(values, mean), np.vstack([np.eye(count), weights])
     unsure = [Part(shown[1] @ one.covariance @ shown[1].T, one.freedom) for one in unsure]
@@ -103,8 +108,8 @@ def joint_bending_notes(robot: RobotModel, bending: JointBending) -> list[Note]:
     )
     text = (
         f"the moments of the robot's motion show joints that bend beyond their encoders, as behind gears: {each} "
-        "mrad/(N·m) (95 %; the other legs' likewise). Angles are put right by it, and K and C hold what it leaves open; "
-        "joints' encoders on the links' side of the gears would leave nothing"
+        "mrad/(N·m) (95 %; the other legs' likewise). Angles are put right by it, and what it leaves open widens K and "
+        "C (encoders on the links' side of the gears see all of it)"
     )
     return [Note(BENT, "info", text)]
 
@@ -117,5 +122,7 @@ def put_straight(robot: RobotModel, log: MotionLog, compliances: Array) -> Motio
     positions = log.positions(robot)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     bent = positions + compliances * np.nan_to_num(leg_torques(robot, positions, wrenches))
-    columns = {f"joint.{robot.joint_names[place]}.position": bent[:, place] for place in np.flatnonzero(compliances)}
+    columns = {
+        f"joint.{robot.joint_names[place]}.position": bent[:, place] for place in np.flatnonzero(compliances)
+    }
     return log.with_columns({name: values for name, values in columns.items() if log.has(name)})

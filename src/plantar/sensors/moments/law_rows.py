@@ -60,6 +60,8 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
     by_bends = by_bending(robot, residual, motion, leg_joints(robot))
+    if centre is not None:  # moments alone show no bending legs beside torques that read too much
+        by_bends = [np.zeros_like(slope) for slope in by_bends]
     by_motion = [*-by_mount, *-np.array(by_bends), *residual.rates, residual.by_encoders, -by_gyroscope]
     # Some at a time and in single precision: all together would be the largest array of any log.
     errors = link_errors(robot)
