@@ -45,6 +45,7 @@ from plantar.sensors.moments.bent_joints import (
 )
 from plantar.sensors.moments.moment_errors import MomentErrors, moment_errors
 from plantar.sensors.moments.moment_fit import moments_of
+from plantar.sensors.moments.sensor_errors import BENDING
 from plantar.sensors.moments.sensor_turns import sensor_turn_notes
 from plantar.sensors.moments.torque_delay import torque_delay_notes
 from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes, torque_gains
@@ -128,13 +129,18 @@ def prepare_checked(
     size = max(look.log.size for look in looks)
     return_freed(size)
     found = _recordings(robot, looks, len(logs), settings, delay, progress)
-    moments = moments_of(robot, found.moments, any(map(has_steps, found.recordings)))
+    steps, balances = any(map(has_steps, found.recordings)), found.moments
+    # Legs that may bend hide what torques read too much: they are asked only where they show it.
+    moments = moments_of(robot, balances, steps, BENDING)
     bending = joint_bending(robot, moments)
     if bending.found:
         del found
         return_freed(size)
         done = replace(delay, residuals=())
         found = _recordings(robot, looks, len(logs), settings, done, progress, bending.compliances)
+    else:
+        moments = moments_of(robot, balances, steps)
+    del balances
     recordings, settings = found.recordings, found.settings
     return_freed(size)
     progress("fit z")

@@ -26,6 +26,7 @@ from plantar.sensors.moments.bent_joints import (
 )
 from plantar.sensors.moments.law_bending import by_bending
 from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
+from plantar.sensors.moments.sensor_errors import BENDING
 from plantar.sensors.newton_euler import CUTOFF, newton_euler_residuals
 from plantar.sensors.newton_sides import carried
 from plantar.twin import PAPER, play_all
@@ -49,7 +50,7 @@ def sweep(twin: RobotModel) -> MotionLog:
 
 def found(twin: RobotModel, log: MotionLog, *, steps: bool = False) -> JointBending:
     [residual] = newton_euler_residuals(twin, log)
-    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else ()))
+    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING))
 
 
 def of(twin: RobotModel, bending: JointBending, name: str) -> tuple[float, float]:

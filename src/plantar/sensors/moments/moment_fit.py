@@ -49,11 +49,14 @@ class MomentFit(NamedTuple):
     parts: list[Part]
 
 
-def moments_of(robot: RobotModel, logs: Sequence[MomentErrors], steps: bool) -> MomentFit | None:
-    """The fit over what each log tells, None without one; `steps`: whether feet step in some."""
+def moments_of(
+    robot: RobotModel, logs: Sequence[MomentErrors], steps: bool, bending: float = STIFF
+) -> MomentFit | None:
+    """The fit over what each log tells, None without one; `steps`: whether feet step in some; `bending`: as of
+    `prior_deviations`."""
     if not logs:
         return None
-    fit = solved(logs, prior_deviations(robot))
+    fit = solved(logs, prior_deviations(robot, bending=bending))
     # Only another unit is so far off: the prior that keeps a gain from passing for other errors would hide it.
     free = solved(logs, prior_deviations(robot, ANOTHER_UNIT, STIFF))
     if _far_off(free, len(robot.feet)):
