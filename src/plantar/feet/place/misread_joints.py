@@ -111,9 +111,9 @@ def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array)
 
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> tuple[list[tuple[str, str]], Array]:
-    """Joints and kinds (c,), and the torque (n, c) of each at the rows of a fit: for each share by which a joint turns more than is read, for
-    each second by which it is read later, for each radian by which it stays behind its own rate; and for each radian by
-    which the IMU tilts with each m/s²."""
+    """Joints and kinds (c,), and the torque (n, c) of each at the rows of a fit: for each share by which a joint turns
+    more than is read, for each second by which it is read later, for each radian by which it stays behind its own rate;
+    and for each radian by which the IMU tilts with each m/s²."""
     columns = dict[tuple[str, str], Array]()
     for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
