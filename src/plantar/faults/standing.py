@@ -18,7 +18,7 @@ from plantar.robot.model import RobotModel
 BETTER = 0.5  # share of the misfit that must be left after the change
 FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
-SHIFTED = 0.003  # m: what moves by less may be noise of the forces
+SHIFTED = 0.005  # of a sole's length: what moves by less may be noise of the forces
 LEANT = 0.006  # m: what moves by less with the soles' lean may be mounts that are turned by a degree
 ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
@@ -67,9 +67,11 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
         yield from found if unit else [_swapped()]
         return
-    turned = _turned_wrench(stance, sides) if max(as_is, sides.moving) > SHIFTED else None
+    soles = [float(np.ptp(foot.sole.polygon, axis=0).max()) for foot in stance.robot.feet.values()]
+    shifted = SHIFTED * max(soles)
+    turned = _turned_wrench(stance, sides) if max(as_is, sides.moving) > shifted else None
     # No wrong mass or place moves with the load: exchanged feet and turned sensors show in a small sway too.
-    far = FAR_BETTER * sides.moving if sides.moving > SHIFTED else 0.0
+    far = FAR_BETTER * sides.moving if sides.moving > shifted else 0.0
     quarter = np.inf if turned is None else turned.moving
     swapped, follows = other.moving < min(far, quarter), quarter < far
     in_world = (
@@ -91,6 +93,8 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
         return
     exchanged = other.misfit
+    # A load in one hand is undone by feet that are exchanged, but not what moves.
+    explains = as_is > NOTABLE and exchanged < BETTER * as_is and other.moving < sides.moving + shifted
     certain = as_is > CERTAIN_MOMENT_ARM
     joints = _reversed_joints(stance, sides) if certain or sides.lean > LEANING else {}
     left = {**joints, **_reversed_components(stance, sides)}
@@ -104,7 +108,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text += f"{100 * world.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
         valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
         yield Finding("wrench_turned", f"{text} ({valid})")
-    elif (swapped or (as_is > NOTABLE and exchanged < BETTER * as_is)) and exchanged < best + ALIKE * as_is:
+    elif (swapped and as_is <= NOTABLE) or ((swapped or explains) and exchanged < best + ALIKE * as_is):
         yield _swapped(f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else "")
     elif (
         turned is not None
