@@ -50,7 +50,7 @@ def sweep(twin: RobotModel) -> MotionLog:
 
 def found(twin: RobotModel, log: MotionLog, *, steps: bool = False) -> JointBending:
     [residual] = newton_euler_residuals(twin, log)
-    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING))
+    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING), steps)
 
 
 def of(twin: RobotModel, bending: JointBending, name: str) -> tuple[float, float]:
@@ -123,7 +123,7 @@ def test_what_the_robot_file_allows_for_is_all_that_is_known_without_moments(
 ) -> None:
     """And more than what is known with them."""
     unsure = replace(twin, uncertainty=replace(twin.uncertainty, joint_compliance=COMPLIANCE))
-    alone = joint_bending(unsure, None)
+    alone = joint_bending(unsure, None, steps=False)
     assert not alone.found
     assert np.allclose(alone.covariance, COMPLIANCE**2)
     assert alone.mean is None
