@@ -22,9 +22,6 @@ from plantar.sensors.moments.sensor_errors import compliance_columns
 BENT = "joints_bend"
 # rad, with the robot's weight at a metre: less passes for none. A URDF's legs that are a little too short do as much.
 USUAL = 0.004
-# Likewise of a robot that only stands: of simulated ones under wrong URDFs single joints seemed to bend by some tenths
-# of a radian, and the mean of all by up to 0.045.
-USUAL_STANDING = 0.012
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
 
@@ -82,13 +79,13 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> Join
         return float(np.linalg.slogdet(total)[1] + values @ np.linalg.solve(total, values))
 
     size = robot.uncertainty.joint_compliance
-    usual = USUAL if steps else USUAL_STANDING
-    unsure = [*parts, Part((usual / load) ** 2 * alike, MOST_FREEDOM)]
+    unsure = [*parts, Part((USUAL / load) ** 2 * alike, MOST_FREEDOM)]
     deviations = np.sqrt(np.sum([np.diag(one.covariance) for one in unsure], axis=0))
     gives_way = mean > 0 and bool((values > -SHOWN * deviations).all())  # no joint bends against its load
     # Of joints that are alike, the mean shows more.
     shown = np.append(values, mean), np.vstack([np.eye(count), weights])
     unsure = [Part(shown[1] @ one.covariance @ shown[1].T, one.freedom) for one in unsure]
+    # Single joints of a robot that only stands seem to bend, either way, where a URDF is wrong.
     asked = [[count], [*range(count)]] if steps else [[count]]
     if gives_way and any(is_wrong(shown[0], unsure, some) for some in asked):
         size = max(size, min(SIZES / load, key=unlikely))
