@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -11,10 +12,11 @@ from before_gears import before_gears
 from biped import TRUTH, record, sway
 from biped_robot import FEET, make_robot
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.joint_compliance import NAME
+from plantar.feet.interval_width.joint_compliance import NAME, joint_compliance_causes
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
+from plantar.sensors.moments.bent_joints import JointBending
 
 COMPLIANCE = 1e-4  # rad/(N.m)
 KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
@@ -60,3 +62,9 @@ def test_it_stands_among_the_causes_with_its_share(results: tuple[FeetResult, Fe
     assert max(shares[0]) == 0.0
     assert min(shares[1]) > 0.5
     assert any("joint_compliance" in row.text for row in results[1].diagnosis)
+
+
+@pytest.mark.parametrize("joints", [0, 3], ids=["a foot alone", "joints that do not bend"])
+def test_nothing_bends(joints: int) -> None:
+    stiff = JointBending(np.zeros(joints), np.zeros((joints, joints)))
+    assert joint_compliance_causes(Mock(), Mock(), stiff) == []

@@ -236,7 +236,7 @@ def test_coarse_encoders_make_no_link_lighter(twin: RobotModel, sweep: MotionLog
     links = []
     for log in (sweep, sweep.with_columns(coarse)):
         [residual] = newton_euler_residuals(twin, log)
-        products = row_products(twin, residual, False).products.sum(axis=1)
+        products = np.sum(row_products(twin, residual, False).products, axis=1)
         links.append(
             np.diagonal(products, axis1=1, axis2=2)[:, 1 + len(prior_deviations(twin, bending=STIFF)) : -12]
         )

@@ -34,10 +34,10 @@ def joint_compliance_causes(robot: RobotModel, tangent: Tangent, bending: JointB
 
     tangent: with all of the recordings' logs.
     """
+    if not bending.covariance.any():
+        return []
     variances, directions = np.linalg.eigh(bending.covariance)
     open_ones = variances > NOTHING * variances[-1]
-    if not open_ones.any():
-        return []
     fit, ways = tangent.fit, np.sqrt(variances[open_ones]) * directions[:, open_ones]
     column, size = ROTATIONAL_AXES.index(fit.axis), tangent.blocks[0].regressor.shape[1]
 

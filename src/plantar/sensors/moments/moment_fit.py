@@ -90,10 +90,11 @@ def is_wrong(values: Array, parts: Sequence[Part], some: list[int]) -> bool:
 def solved(logs: Sequence[MomentErrors], prior: Array) -> MomentFit:
     """The fit with deviations (k,) of the sensors' coefficients before the moments are asked, `prior`."""
     links = logs[0].products.shape[-1] - 1 - len(prior)  # of the one robot of all logs
+    each = [part for log in logs for part in log.products]
     left = np.array([log.power[0, 0] for log in logs])
     for _ in range(2):  # a robot that a hand steadies misses more than one that stands alone
-        weighed = [log.products / by for log, by in zip(logs, left, strict=True)]
-        parts, shares = beside(np.concatenate(weighed), np.ones(links))
+        weights = np.repeat(1 / left, [len(log.products) for log in logs])
+        parts, shares = beside(each, weights, np.ones(links))
         both = parts.sum(axis=0)
         values = coefficients(both, prior)
         remains = np.append(1.0, -values)
