@@ -58,7 +58,7 @@ class StanceChanges:
 
     @property
     def shifted(self) -> float:
-        """What moves of a misfit [m] beyond the forces' noise."""
+        """What moves by less [m] may be noise of the forces."""
         soles = (foot.sole.polygon for foot in self.stance.robot.feet.values())
         return SHIFTED * max(float(np.ptp(polygon, axis=0).max()) for polygon in soles)
 

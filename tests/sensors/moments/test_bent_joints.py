@@ -26,7 +26,8 @@ from plantar.sensors.moments.bent_joints import (
 )
 from plantar.sensors.moments.law_bending import by_bending
 from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
-from plantar.sensors.moments.sensor_errors import BENDING
+from plantar.sensors.moments.moment_fit import MomentFit, Part
+from plantar.sensors.moments.sensor_errors import BENDING, compliance_columns, prior_deviations
 from plantar.sensors.newton_euler import CUTOFF, newton_euler_residuals
 from plantar.sensors.newton_sides import carried
 from plantar.twin import PAPER, play_all
@@ -50,7 +51,7 @@ def sweep(twin: RobotModel) -> MotionLog:
 
 def found(twin: RobotModel, log: MotionLog, *, steps: bool = False) -> JointBending:
     [residual] = newton_euler_residuals(twin, log)
-    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING), steps)
+    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING))
 
 
 def of(twin: RobotModel, bending: JointBending, name: str) -> tuple[float, float]:
@@ -123,7 +124,7 @@ def test_what_the_robot_file_allows_for_is_all_that_is_known_without_moments(
 ) -> None:
     """And more than what is known with them."""
     unsure = replace(twin, uncertainty=replace(twin.uncertainty, joint_compliance=COMPLIANCE))
-    alone = joint_bending(unsure, None, steps=False)
+    alone = joint_bending(unsure, None)
     assert not alone.found
     assert np.allclose(alone.covariance, COMPLIANCE**2)
     assert alone.mean is None
@@ -166,3 +167,14 @@ def test_torques_of_a_foot_turn_the_joints_of_its_own_leg(twin: RobotModel, swee
     turned = {twin.joint_names[place] for place in np.flatnonzero(np.abs(torques) > 1e-6)}
     assert turned
     assert turned < {name for name in LEGS if name.startswith(next(iter(twin.feet))[0].upper())}
+
+
+@pytest.mark.parametrize(("mean", "some"), [(0.0, False), (5e-5, True)])
+def test_joints_of_which_one_alone_seems_to_bend_are_stiff(twin: RobotModel, mean: float, some: bool) -> None:
+    """As where an encoder slips: five deviations in one joint, and none in all together."""
+    columns, count = compliance_columns(twin), len(prior_deviations(twin))
+    values, std = np.zeros(count), np.full(count, 1e-5)
+    values[columns], std[columns.start + 2] = mean, 5e-5
+    values[columns.start + 2] += 2.5e-4
+    fit = MomentFit(values, [Part(np.diag(std**2), 39.0)])
+    assert joint_bending(twin, fit).found == some

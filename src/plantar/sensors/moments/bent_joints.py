@@ -55,9 +55,8 @@ class JointBending(NamedTuple):
         return cls(np.zeros(joints), np.full((joints, joints), variance))
 
 
-def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> JointBending:
-    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs; `steps`: whether
-    feet step in some logs.
+def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
+    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs.
 
     Compliances are as large as each other within their own size, which the moments tell; the robot file's, where that
     is larger.
@@ -82,12 +81,9 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> Join
     unsure = [*parts, Part((USUAL / load) ** 2 * alike, MOST_FREEDOM)]
     deviations = np.sqrt(np.sum([np.diag(one.covariance) for one in unsure], axis=0))
     gives_way = mean > 0 and bool((values > -SHOWN * deviations).all())  # no joint bends against its load
-    # Of joints that are alike, the mean shows more.
-    shown = np.append(values, mean), np.vstack([np.eye(count), weights])
-    unsure = [Part(shown[1] @ one.covariance @ shown[1].T, one.freedom) for one in unsure]
-    # Single joints of a robot that only stands seem to bend, either way, where a URDF is wrong.
-    asked = [[count], [*range(count)]] if steps else [[count]]
-    if gives_way and any(is_wrong(shown[0], unsure, some) for some in asked):
+    # Of all joints together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
+    own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in unsure]
+    if gives_way and is_wrong(np.array([mean]), own, [0]):
         size = max(size, min(SIZES / load, key=unlikely))
     if not size:
         return told._replace(mean=mean, std=std)
