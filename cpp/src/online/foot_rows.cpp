@@ -57,7 +57,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   follow_elements(row, time, dt);
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
-  if (!stands || !row.stands) return;
+  if (!row.stands) return;
   if (left_out_ || (estimate_.flags & (SLIP | IMPACT | CONTRADICTION))) {
     pause_ = std::abs(delay_) + 1.5 * dt;  // two ticks, and the delay
     return;
@@ -67,17 +67,17 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   if (!running_) {
     filter_.design(cutoff_, period);
     filter_.restart();
-    running_ = true, begun_ = time;
+    running_ = true;
   }
   const double load = forces[0], x = forces[1], y = forces[2];
   double channels[FilteredRow::CHANNELS] = {1.0,
-                               time - begun_,
+                               time,
                                load,
                                x,
                                y,
                                load * x,
                                load * y,
-                               -std::sin(angles[0]),
+                               std::sin(angles[0]),
                                angles[0],
                                angles[2],
                                angles[6],

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "online/air_zero.hpp"
+#include "online/axis_published.hpp"
 #include "online/axis_regression.hpp"
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
@@ -24,8 +25,6 @@
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
-
-constexpr double STIFFEST = 100.0;  // m, times the weight: stiffness before any data
 
 inline bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
 
@@ -136,7 +135,6 @@ class FootTracker {
   double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
   bool begun_elements_ = false;                          // their bounds are those of a bush somewhere on its way
   bool running_ = false;                                 // the filter has begun
-  double begun_ = 0.0;                                   // at this time
   double pause_ = 0.0;                                   // s for which the lines still hold ticks that were left out
   double told_change_ = 0.0;                             // s for which a change of ground is still told
   double row_time_ = 0.0;                                // since the last row
