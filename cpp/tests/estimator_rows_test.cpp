@@ -126,25 +126,7 @@ void what_is_doubted_is_in_no_row(Change change, std::uint32_t flag, const char*
   }
 }
 
-// Clocks count from long ago: steps of 1/256 s are exact on both.
-void when_time_began_does_not_matter() {
-  FootEstimate found[2];
-  for (const bool later : {false, true}) {
-    FootEstimator estimator(two_feet());
-    for (int i = 0; i < 20 * 256; ++i)
-      found[later] = estimator.step(Sensors(i / 256.0).reading(i / 256.0 + (later ? 1 << 30 : 0)))[0];
-  }
-  const auto same = [&](Parameter AxisEstimate::*one, const char* what) {
-    const Parameter &now = found[0].pitch.*one, &then = found[1].pitch.*one;
-    check::near(then.value, now.value, 1e-9 * now.value, what);
-    check::near(then.std, now.std, 1e-6 * now.std, what);
-  };
-  same(&AxisEstimate::stiffness, "a stiffness, at any time");
-  same(&AxisEstimate::damping, "and a damping");
-}
-
 void run() {
-  when_time_began_does_not_matter();
   what_is_outside_a_stance_is_in_no_row();
   what_ends_on_its_edge_is_no_row();
   what_is_doubted_is_in_no_row(strikes, IMPACT, "an impact");

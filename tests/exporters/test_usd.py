@@ -85,6 +85,9 @@ def test_overs_leave_the_users_stage_as_it_is(tmp_path: Path) -> None:
     masses = [UsdPhysics.MassAPI(stage.GetPrimAtPath(f"{robot}/{name}")).GetMassAttr().Get()
               for name in ("left_ankle", "left_bush_z_link", "left_bush_pitch_link", "left_bush_sole")]  # fmt: skip
     assert sum(masses) == pytest.approx(1.5)
+    sole = UsdPhysics.FilteredPairsAPI(stage.GetPrimAtPath(f"{robot}/left_bush_sole"))
+    apart = [str(path) for path in sole.GetFilteredPairsRel().GetTargets()]
+    assert apart == [f"{robot}/left_ankle"], "a sole stands in its ankle's shapes"
 
 
 def test_joints_and_bodies_meet(tmp_path: Path) -> None:

@@ -67,11 +67,11 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   if (!running_) {
     filter_.design(cutoff_, period);
     filter_.restart();
-    running_ = true;
+    running_ = true, begun_ = time;
   }
   const double load = forces[0], x = forces[1], y = forces[2];
   double channels[FilteredRow::CHANNELS] = {1.0,
-                               time,
+                               time - begun_,
                                load,
                                x,
                                y,

@@ -135,6 +135,7 @@ class FootTracker {
   double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
   bool begun_elements_ = false;                          // their bounds are those of a bush somewhere on its way
   bool running_ = false;                                 // the filter has begun
+  double begun_ = 0.0;                                   // at this time
   double pause_ = 0.0;                                   // s for which the lines still hold ticks that were left out
   double told_change_ = 0.0;                             // s for which a change of ground is still told
   double row_time_ = 0.0;                                // since the last row

@@ -17,6 +17,7 @@ from plantar.logs.readers.ports import joints_for
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import Stream, increasing, merge, origin, resample
 from plantar.logs.readers.text_numbers import read_numbers
+from plantar.logs.save_mc_rtc import save_mc_rtc
 from plantar.notes import Note
 
 LOG = Path("x")
@@ -251,6 +252,23 @@ def test_an_mc_rtc_log_begins_as_one(magic: bytes, tmp_path: Path) -> None:
     path.write_bytes(magic)
     with pytest.raises(LogError, match="is not an mc_rtc binary log"):
         mc_rtc.read(path, None, ReadLimit(path, []))
+
+
+@pytest.mark.parametrize(("rest", "notes"), [(0, []), (3, ["file_cut"]), (11, ["file_cut"]), (40, ["file_cut"])])
+def test_an_mc_rtc_log_that_is_cut_gives_its_whole_entries(rest: int, notes: list[str], tmp_path: Path) -> None:
+    """Behind 20 entries of 60 bytes at least, `rest` bytes of one more: within its size, and within its content."""
+    path, time = tmp_path / "log.bin", 0.005 * np.arange(21)
+    save_mc_rtc(path, time[:20], np.zeros((20, 2)), np.tile(np.eye(4), (20, 1, 1)))
+    whole = path.stat().st_size
+    save_mc_rtc(path, time, np.zeros((21, 2)), np.tile(np.eye(4), (21, 1, 1)))
+    path.write_bytes(path.read_bytes()[: whole + rest])
+    told: list[Note] = []
+    entries = mc_rtc._Entries(path, None, ReadLimit(path, []))
+    with path.open("rb") as file:
+        file.seek(4)
+        entries.read(file, told)
+    assert len(entries.columns()["t"]) == 20
+    assert [note.code for note in told] == notes
 
 
 def test_joints_without_names_have_the_urdfs_order_where_their_number_agrees(tmp_path: Path) -> None:
