@@ -11,7 +11,7 @@ import pytest
 from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import mc_rtc, open_log, text_numbers
+from plantar.logs.readers import mc_rtc, open_log, robot_logger, text_numbers
 from plantar.logs.readers.force_cells import wrench_of_cells
 from plantar.logs.readers.ports import joints_for
 from plantar.logs.readers.read_limit import ReadLimit
@@ -244,6 +244,24 @@ def test_mat_files_of_another_kind_say_what_to_write_instead(tmp_path: Path) -> 
         file["hip_angle"] = np.zeros(4)
     with pytest.raises(LogError, match=r"holds no signal of a robot logger, but hip_angle .*writetable"):
         open_log(tmp_path / "own.mat")
+
+
+@pytest.mark.parametrize("shape", [(3, 1, 4), (4, 3), (3, 4), (4, 1, 4), (4, 4)])
+def test_a_signal_has_a_row_for_each_stamp_whichever_way_it_was_written(
+    shape: tuple[int, ...], tmp_path: Path
+) -> None:
+    """Of as many numbers as samples as it comes: MATLAB's order is turned round by HDF5 already."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "log.mat", "w") as file:
+        group = file.create_group("joints")
+        group["timestamps"], group["data"] = (
+            np.arange(4.0)[None],
+            np.arange(np.prod(shape), dtype=float).reshape(shape),
+        )
+        time, values = robot_logger._signal(group, "joints", ReadLimit(tmp_path / "log.mat", 10**6))
+    wanted = np.arange(np.prod(shape), dtype=float).reshape(shape[0], -1)
+    np.testing.assert_array_equal(values, wanted if shape[0] == 4 else wanted.T)
+    np.testing.assert_array_equal(time, np.arange(4.0))
 
 
 @pytest.mark.parametrize("magic", [b"ANNA", b"ANN", b"XNNE", b"ANNZ"])
