@@ -10,6 +10,7 @@ import pytest
 
 from plantar.faults import standing
 from plantar.faults.stance import StanceSides
+from plantar.faults.stance_changes import StanceChanges, TurnedWrench
 from plantar.notes import Finding
 
 UP = np.tile([0.0, 0.0, 1.0], (10, 1))
@@ -59,15 +60,15 @@ def said(
     left: dict[str, float] | None = None,
     joints: dict[str, float] | None = None,
     pair: str | None = None,
-    turned: standing._TurnedWrench | None = None,
+    turned: TurnedWrench | None = None,
     unit: tuple[Finding, ...] = (),
 ) -> Finding | None:
     """The finding, where `left` and `joints` are the misfits with a component or a joint reversed."""
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
-    monkeypatch.setattr(standing, "_reversed_joints", lambda *_: joints or {})
-    monkeypatch.setattr(standing, "_reversed_components", lambda *_: left or {})
-    monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: pair)
-    monkeypatch.setattr(standing, "_turned_wrench", lambda *_: turned)
+    monkeypatch.setattr(StanceChanges, "_reversed_joints", lambda _: joints or {})
+    monkeypatch.setattr(StanceChanges, "_reversed_components", lambda _: left or {})
+    monkeypatch.setattr(StanceChanges, "exchanged_joints", lambda *_: pair)
+    monkeypatch.setattr(StanceChanges, "quarter_turn", turned)
     monkeypatch.setattr(standing, "torque_unit", lambda *_: unit)
     found = list(standing.check_balance(None, None))  # type: ignore[arg-type]
     assert len(found) <= 1
@@ -113,7 +114,7 @@ def test_wrenches_in_the_world_s_axes(
     monkeypatch: pytest.MonkeyPatch, misfit: float, world: float, turned: float | None, told: bool
 ) -> None:
     """They leave less than half, and less than sensors that are turned by a quarter."""
-    quarter = None if turned is None else standing._TurnedWrench(turned, 1.0, 90, "columns 'wrench.*'")
+    quarter = None if turned is None else TurnedWrench(turned, 1.0, 90, "columns 'wrench.*'")
     found = said(monkeypatch, Stub(misfit, world=world), turned=quarter)
     assert (found is not None and "read as in the world's axes" in found.text) == told
 
@@ -122,7 +123,7 @@ def test_wrenches_in_the_world_s_axes(
 def test_no_unit_is_told_where_the_world_s_axes_explain_what_moves(
     monkeypatch: pytest.MonkeyPatch, world: float, code: str
 ) -> None:
-    quarter = standing._TurnedWrench(0.034, 1.0, 90, "columns 'wrench.*'")
+    quarter = TurnedWrench(0.034, 1.0, 90, "columns 'wrench.*'")
     unit = Finding("torque_unit", "another unit", True)
     found = said(monkeypatch, Stub(0.1, world=world, exchanged=0.1), turned=quarter, unit=(unit,))
     assert found is not None
@@ -207,7 +208,7 @@ def test_sensors_that_are_turned_in_a_small_sway(
     monkeypatch: pytest.MonkeyPatch, misfit: float, moving: float, told: bool
 ) -> None:
     """Half of the misfit moves as read."""
-    turned = standing._TurnedWrench(misfit / 4, moving, 180, "columns 'wrench.left.*'")
+    turned = TurnedWrench(misfit / 4, moving, 180, "columns 'wrench.left.*'")
     found = said(monkeypatch, Stub(misfit, moves=0.9), turned=turned)
     assert (found is not None and found.code == "wrench_turned") == told
 
@@ -249,7 +250,7 @@ def test_a_sensor_that_is_turned_by_a_quarter(
     monkeypatch: pytest.MonkeyPatch, left: float, best: float, told: bool
 ) -> None:
     """It leaves a third, and clearly less than any reversal."""
-    turned = standing._TurnedWrench(left, 1.0, -90, "columns 'wrench.left.*'")
+    turned = TurnedWrench(left, 1.0, -90, "columns 'wrench.left.*'")
     found = said(monkeypatch, Stub(0.1), {"column 'a'": best} if np.isfinite(best) else {}, turned=turned)
     assert (found is not None and found.code == "wrench_turned") == told
     if found and told:

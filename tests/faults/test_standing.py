@@ -10,6 +10,7 @@ import pytest
 
 from plantar.faults import standing
 from plantar.faults.log_faults import check_log
+from plantar.faults.stance_changes import StanceChanges
 from plantar.faults.standing import check_balance
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
@@ -156,7 +157,7 @@ def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
     stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left, moving=0.1)
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     stance.sole_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
-    monkeypatch.setattr(standing, "_turned_wrench", lambda *_: None)
+    monkeypatch.setattr(StanceChanges, "quarter_turn", None)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     found = Finding("torque_unit", "columns 'wrench.*.torque.*': torques 8.4 times as large", True)
     monkeypatch.setattr(
@@ -185,10 +186,10 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     stance.sole_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
-    monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})
-    monkeypatch.setattr(standing, "_reversed_components", lambda *_: {})
-    monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: None)
-    monkeypatch.setattr(standing, "_turned_wrench", lambda *_: None)
+    monkeypatch.setattr(StanceChanges, "_reversed_joints", lambda _: {"column 'joint.ankle.position'": left})
+    monkeypatch.setattr(StanceChanges, "_reversed_components", lambda _: {})
+    monkeypatch.setattr(StanceChanges, "exchanged_joints", lambda *_: None)
+    monkeypatch.setattr(StanceChanges, "quarter_turn", None)
     (finding,) = check_balance(hrp2.robot(), tilt)
     assert finding.code == "swapped_feet"
     assert ("or column 'joint.ankle.position' is reversed" in finding.text) == told

@@ -278,8 +278,8 @@ DATA_FAULTS = (
         "abs(moved) < PART * NORMAL95 * float(wide.std[RATE])", "False", ("feet/assess/test_sensor_hysteresis.py",),
     ),
     Mutant(
-        "feet/interval_width/joint_compliance.py", "joints bend half as much", "changes)[:size], compliance)",
-        "changes)[:size], compliance / 2)", ("feet/interval_width/test_joint_compliance.py",),
+        "feet/interval_width/joint_compliance.py", "joints bend half as much", "axis=1), 1.0)]",
+        "axis=1), 0.5)]", ("feet/interval_width/test_joint_compliance.py",),
     ),
     Mutant(
         "feet/assess/contradiction.py", "drift contradicts the fit",

@@ -14,7 +14,7 @@ SENSOR_FAULTS = (
         "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("faults/joints/test_closed_chain.py",),
     ),
     Mutant(
-        "faults/standing.py", "force sensors are turned one at a time only",
+        "faults/stance_changes.py", "force sensors are turned one at a time only",
         "{**ways, \"columns 'wrench.*'\": [*range(len(sensors))]}", "ways", ("faults/test_standing.py",),
     ),
     Mutant(
@@ -76,7 +76,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "sensors/moments/moment_errors.py", "the noise of readings is arms",
-        "with_noise - np", "with_noise - 0 * np", ("sensors/moments/test_torque_gains.py",),
+        "-= factor * _products", "-= 0 * factor * _products", ("sensors/moments/test_torque_gains.py",),
     ),
     Mutant(
         "robot_guess/passive.py", "a foot may push the way it tilts",

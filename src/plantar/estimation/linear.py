@@ -59,12 +59,13 @@ def least_left(blocks: Sequence[Block], columns: Sequence[Array]) -> Array:
     Whatever the weights of rows and the priors of offsets: these are the squares without either. One factor tells all.
     """
     size = common_columns(blocks[0]).shape[1]
-    rows = []
+    factors = []  # block by block: rows of an hour take tens of megabytes
     for block, more in zip(blocks, columns, strict=True):
         own = block.with_nuisance(np.ones((len(more), 1))).nuisance
         assert own is not None, "it has one column at least"
-        rows.append(without(own, np.column_stack([common_columns(block), more, block.response])))
-    left = TriangularFactor.of(np.vstack(rows)).factor[size:, size:]
+        rows = without(own, np.column_stack([common_columns(block), more, block.response]))
+        factors.append(TriangularFactor.of(rows))
+    left = TriangularFactor.together(factors).factor[size:, size:]
     along, squares = left[:, -1] @ left[:, :-1], np.sum(left[:, :-1] ** 2, axis=0)
     return np.asarray(left[:, -1] @ left[:, -1] - along**2 / np.maximum(squares, np.finfo(float).tiny))
 

@@ -2,49 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from itertools import pairwise
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Final
 
 import numpy as np
 
-from plantar.faults.joints.names import legs
-from plantar.faults.stance import Stance, StanceSides, stance_of, usual
+from plantar.faults.stance import stance_of, usual
+from plantar.faults.stance_changes import (
+    BETTER,
+    CERTAIN_MOMENT_ARM,
+    FAR_BETTER,
+    LEANING,
+    NOTABLE,
+    StanceChanges,
+)
 from plantar.faults.torque_unit import torque_unit
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
-BETTER = 0.5  # share of the misfit that must be left after the change
-FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
-NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
-SHIFTED = 0.003  # m: what moves by less may be noise of the forces
 LEANT = 0.006  # m: what moves by less with the soles' lean may be mounts that are turned by a degree
 ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
-CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
 CERTAIN = 0.1  # share left: no larger error of masses or mounting is undone so well by chance
 UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
 FARTHEST = 1.5  # m: no posture and no mass is that far off
-# Between the ground's usual force and the IMU's up: more than zeros of sensors make.
-LEANING = np.radians(3.5)
 PUSHED = 2.0  # times LEANING: more than who holds a robot leans on it
 TURNED = np.radians(10)  # accelerations turn the force by some degrees too
 IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off
 MOST_NAMED = 3  # ways to mount it that one line tells
-QUARTERS = (90, 180, -90)  # deg: how a sensor is mounted wrongly, or its axes named
 LEANS, LEANS_LITTLE = "force_leans", "force_leans_little"  # codes
-COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force.z is judged by its own sign
-
-
-class _TurnedWrench(NamedTuple):
-    """What is left of the misfit [m] with force sensors turned about their own z axes, and of what moves of it;
-    `columns` names which."""
-
-    misfit: float
-    moving: float
-    degrees: int
-    columns: str
 
 
 def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -56,92 +43,22 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     stance = stance_of(robot, log)
     if stance is None:
         return
-    sides = stance.sides()
-    as_is, other = sides.misfit, stance.exchanged_wrenches().sides()
-    world = stance.world_wrenches().sides()
-    # Wrenches in other axes look like torques of another size. No rubber bends so far that soles explain more.
-    below = stance.sole_wrenches().sides().moving if as_is < CERTAIN_MOMENT_ARM else np.inf
-    turning = min(world.moving, below) < BETTER * sides.moving
-    if not turning and (found := list(torque_unit(robot, log, sides))):
-        # Moments of exchanged forces are so large that right torques look too small.
-        unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * as_is
-        yield from found if unit else [_swapped()]
-        return
-    turned = _turned_wrench(stance, sides) if max(as_is, sides.moving) > SHIFTED else None
-    # No wrong mass or place moves with the load: exchanged feet and turned sensors show in a small sway too.
-    far = FAR_BETTER * sides.moving if sides.moving > SHIFTED else 0.0
-    quarter = np.inf if turned is None else turned.moving
-    swapped, follows = other.moving < min(far, quarter), quarter < far
-    in_world = (
-        as_is > NOTABLE and world.moving * BETTER < below
-    )  # of a robot that faces along the world's x alike
-    if sides.moving > LEANT and below < min(far, other.moving, quarter) and not in_world:
-        text = "columns 'wrench.*': read as in axes that turn with the soles, the wrenches balance gravity far better"
-        yield Finding("wrench_turned", f"{text} (valid: in axes that turn with the ankles, above the rubber)")
-        return
-    if as_is <= NOTABLE and sides.lean <= LEANING and not (swapped or follows):
-        yield from _turned(stance, sides)
-        return
-    in_metres = sides.moment_arms.copy()
-    in_metres[:, :, 3:] /= 1000
-    if as_is > FARTHEST:
-        text = f"columns 'wrench.*': balance gravity only to {as_is:.3g} m about the centre of mass"
-        millimetres = usual(in_metres.sum(axis=(1, 2))) < 0.1 * as_is
-        valid = "valid: torques in N·m; these look like N·mm" if millimetres else "valid: below 0.02 m"
-        yield Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
-        return
-    exchanged = other.misfit
-    certain = as_is > CERTAIN_MOMENT_ARM
-    joints = _reversed_joints(stance, sides) if certain or sides.lean > LEANING else {}
-    left = {**joints, **_reversed_components(stance, sides)}
-    best = min(left.values(), default=np.inf)
-    least = min(best, exchanged)
-    if certain and (pair := _exchanged_joints(stance, sides, min(least, world.misfit))) is not None:
-        text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
-        yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
-    elif as_is > NOTABLE and _in_world(sides, world, least if turned is None else min(least, turned.misfit)):
-        text = "columns 'wrench.*': read as in the world's axes, they balance gravity to "
-        text += f"{100 * world.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
-        valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
-        yield Finding("wrench_turned", f"{text} ({valid})")
-    elif (swapped or (as_is > NOTABLE and exchanged < BETTER * as_is)) and exchanged < best + ALIKE * as_is:
-        yield _swapped(f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else "")
-    elif (
-        turned is not None
-        and (follows or as_is > NOTABLE)
-        and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is)
+    changes = StanceChanges(stance)
+    # Wrenches in other axes look like torques of another size.
+    if not min(changes.world_axes.moving, changes.sole_axes) < BETTER * changes.as_is.moving and (
+        found := list(torque_unit(robot, log, changes.as_is))
     ):
-        text = f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
-        text += f" gravity to {100 * turned.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
-        yield Finding("wrench_turned", f"{text} (check the sensors' rpy in the robot file)")
-    elif as_is > NOTABLE and best < BETTER * as_is:
-        alike = _alike(left, as_is)
-        text = f"{alike}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
-        certain = (certain and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
-        joint = "'joint." in min(left, key=left.__getitem__)
-        valid = "valid: the signs of URDF and robot file"
-        valid += ", and the URDF's joints, not the motors of a parallel linkage" * joint
-        yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", joint and certain)
-    elif sides.lean > LEANING:
-        text = f"columns 'imu.{stance.imu.name}.*': the ground's force leans {np.degrees(sides.lean):.1f} deg from up"
-        where = "check the IMU's rpy, the joints above the feet, the wrenches' zeros"
-        valid = f"valid: below {np.degrees(LEANING):.1f} deg; {where}"
-        code = LEANS if sides.lean > PUSHED * LEANING else LEANS_LITTLE
-        yield Finding(code, f"{text} ({valid})", bool(sides.lean > IMPOSSIBLE))
-    elif as_is > UNEXPLAINED:
-        text = f"columns 'wrench.*': balance gravity only to {100 * as_is:.1f} cm about the URDF's centre of mass"
-        where = "check the encoders' zeros, where the wrenches are measured, and the masses"
-        yield Finding("balance", f"{text} (valid: below {100 * NOTABLE:.0f} cm; {where})")
+        # Moments of exchanged forces are so large that right torques look too small.
+        other = changes.exchanged_feet
+        unit = list(torque_unit(robot, log, other)) or other.misfit > BETTER * changes.misfit
+        yield from found if unit else [_swapped()]
+    elif finding := _in_sole_axes(changes):
+        yield finding
+    elif _balances(changes):
+        yield from _turned_imu(changes)
     else:
-        yield from _turned(stance, sides)
-
-
-def _in_world(sides: StanceSides, world: StanceSides, least: float) -> bool:
-    """Whether wrenches in the world's axes explain the misfit, what is constant of it and what moves, and clearly
-    better than all else, which leaves the `least` [m]: of a robot that faces along the world's x sensors that are
-    turned in the robot file may look alike."""
-    left = world.misfit / sides.misfit, world.moving / max(sides.moving, ROUNDING)
-    return max(left) < 1.0 and sum(left) < 2 * BETTER and left[0] < least / sides.misfit - ALIKE
+        finding = next(filter(None, (explained(changes) for explained in EXPLANATIONS)), None)
+        yield from _turned_imu(changes) if finding is None else [finding]
 
 
 def _swapped(or_else: str = "") -> Finding:
@@ -149,103 +66,155 @@ def _swapped(or_else: str = "") -> Finding:
     return Finding("swapped_feet", f"{text} (check the sensors' names)", True)
 
 
-def _alike(left: Mapping[str, float], as_is: float) -> str:
-    """The changes that leave about as little of the misfit as the best one."""
-    most = min(left.values()) + ALIKE * as_is
+def _in_sole_axes(changes: StanceChanges) -> Finding | None:
+    """Wrenches that turn with the soles, which explain what moves of the misfit better than any other change."""
+    quarter = np.inf if changes.quarter_turn is None else changes.quarter_turn.moving
+    sides, world, left = changes.as_is, changes.world_axes, changes.sole_axes
+    # Of a robot that faces along the world's x these are alike.
+    in_world = changes.misfit > NOTABLE and world.moving * BETTER < left
+    least = min(changes.far, changes.exchanged_feet.moving, quarter)
+    if sides.moving <= LEANT or left >= least or in_world:
+        return None
+    text = "columns 'wrench.*': read as in axes that turn with the soles, the wrenches balance gravity far better"
+    return Finding("wrench_turned", f"{text} (valid: in axes that turn with the ankles, above the rubber)")
+
+
+def _balances(changes: StanceChanges) -> bool:
+    """Whether the misfit is within the model's own error, and no change of the sensors follows the motion better."""
+    small = changes.misfit <= NOTABLE and changes.as_is.lean <= LEANING
+    return small and not (_feet_follow(changes) or _quarter_follows(changes))
+
+
+def _feet_follow(changes: StanceChanges) -> bool:
+    """Whether exchanged feet follow the motion far better, and better than a sensor that is turned."""
+    quarter = np.inf if changes.quarter_turn is None else changes.quarter_turn.moving
+    return changes.exchanged_feet.moving < min(changes.far, quarter)
+
+
+def _quarter_follows(changes: StanceChanges) -> bool:
+    """Whether a sensor that is turned by quarters follows the motion far better."""
+    return changes.quarter_turn is not None and changes.quarter_turn.moving < changes.far
+
+
+def _too_far(changes: StanceChanges) -> Finding | None:
+    """A misfit that only another unit can make."""
+    if changes.misfit <= FARTHEST:
+        return None
+    in_metres = changes.as_is.moment_arms.copy()
+    in_metres[:, :, 3:] /= 1000
+    text = f"columns 'wrench.*': balance gravity only to {changes.misfit:.3g} m about the centre of mass"
+    millimetres = usual(in_metres.sum(axis=(1, 2))) < 0.1 * changes.misfit
+    valid = "valid: torques in N·m; these look like N·mm" if millimetres else "valid: below 0.02 m"
+    return Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
+
+
+def _exchanged_joints(changes: StanceChanges) -> Finding | None:
+    if changes.misfit <= CERTAIN_MOMENT_ARM:
+        return None
+    others = (changes.best_sign, changes.exchanged_feet.misfit, changes.world_axes.misfit)
+    pair = changes.exchanged_joints(min(others))
+    if pair is None:
+        return None
+    text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
+    return Finding("joint_names", f"{text} (check the joints' names and order)", True)
+
+
+def _in_world_axes(changes: StanceChanges) -> Finding | None:
+    """Wrenches in the world's axes, which explain the misfit, what is constant of it and what moves, and clearly
+    better than all else: of a robot that faces along the world's x sensors that are turned in the robot file may look
+    alike."""
+    if changes.misfit <= NOTABLE:
+        return None
+    sides, world, turned = changes.as_is, changes.world_axes, changes.quarter_turn
+    least = min(changes.best_sign, changes.exchanged_feet.misfit, np.inf if turned is None else turned.misfit)
+    left = world.misfit / sides.misfit, world.moving / max(sides.moving, ROUNDING)
+    explains = max(left) < 1.0 and sum(left) < 2 * BETTER and left[0] < least / sides.misfit - ALIKE
+    if not explains:
+        return None
+    text = "columns 'wrench.*': read as in the world's axes, they balance gravity to "
+    text += f"{100 * world.misfit:.1f} cm instead of {100 * changes.misfit:.1f} cm"
+    valid = "valid: in the sensors' own axes; check also their rpy in the robot file"
+    return Finding("wrench_turned", f"{text} ({valid})")
+
+
+def _exchanged_feet(changes: StanceChanges) -> Finding | None:
+    exchanged, best, alike = changes.exchanged_feet.misfit, changes.best_sign, ALIKE * changes.misfit
+    explains = changes.misfit > NOTABLE and exchanged < BETTER * changes.misfit
+    if not (_feet_follow(changes) or explains) or exchanged >= best + alike:
+        return None
+    return _swapped(f"; or {_alike(changes)} is reversed" if best < exchanged + alike else "")
+
+
+def _quarter_turn(changes: StanceChanges) -> Finding | None:
+    turned, misfit = changes.quarter_turn, changes.misfit
+    if turned is None or not (_quarter_follows(changes) or misfit > NOTABLE):
+        return None
+    if turned.misfit >= min(FAR_BETTER * misfit, changes.best_sign - ALIKE * misfit):
+        return None
+    text = (
+        f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
+    )
+    text += f" gravity to {100 * turned.misfit:.1f} cm instead of {100 * misfit:.1f} cm"
+    return Finding("wrench_turned", f"{text} (check the sensors' rpy in the robot file)")
+
+
+def _reversed_sign(changes: StanceChanges) -> Finding | None:
+    misfit, best, signs = changes.misfit, changes.best_sign, changes.reversed_signs
+    if misfit <= NOTABLE or best >= BETTER * misfit:
+        return None
+    text = f"{_alike(changes)}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
+    sure = misfit > CERTAIN_MOMENT_ARM and best < CERTAIN * misfit
+    joint = "'joint." in min(signs, key=signs.__getitem__)
+    valid = "valid: the signs of URDF and robot file"
+    valid += ", and the URDF's joints, not the motors of a parallel linkage" * joint
+    certain = joint and (sure or changes.as_is.lean > IMPOSSIBLE)
+    return Finding("sign", f"{text} instead of {100 * misfit:.1f} cm ({valid})", bool(certain))
+
+
+def _alike(changes: StanceChanges) -> str:
+    """The signs that leave about as little of the misfit as the best one."""
+    left, most = changes.reversed_signs, changes.best_sign + ALIKE * changes.misfit
     alike = sorted((name for name in left if left[name] < most), key=left.__getitem__)
     return " or ".join(alike[:MOST_NAMED])
 
 
-def _turned(stance: Stance, sides: StanceSides) -> Iterator[Finding]:
+def _leaning(changes: StanceChanges) -> Finding | None:
+    lean = changes.as_is.lean
+    if lean <= LEANING:
+        return None
+    imu = changes.stance.imu.name
+    text = f"columns 'imu.{imu}.*': the ground's force leans {np.degrees(lean):.1f} deg from up"
+    where = "check the IMU's rpy, the joints above the feet, the wrenches' zeros"
+    valid = f"valid: below {np.degrees(LEANING):.1f} deg; {where}"
+    code = LEANS if lean > PUSHED * LEANING else LEANS_LITTLE
+    return Finding(code, f"{text} ({valid})", bool(lean > IMPOSSIBLE))
+
+
+def _unexplained(changes: StanceChanges) -> Finding | None:
+    if changes.misfit <= UNEXPLAINED:
+        return None
+    text = f"columns 'wrench.*': balance gravity only to {100 * changes.misfit:.1f} cm about the URDF's centre of mass"
+    where = "check the encoders' zeros, where the wrenches are measured, and the masses"
+    return Finding("balance", f"{text} (valid: below {100 * NOTABLE:.0f} cm; {where})")
+
+
+# Of a misfit, in this order: the first that explains it is told.
+EXPLANATIONS: Final[tuple[Callable[[StanceChanges], Finding | None], ...]] = (
+    _too_far,
+    _exchanged_joints,
+    _in_world_axes,
+    _exchanged_feet,
+    _quarter_turn,
+    _reversed_sign,
+    _leaning,
+    _unexplained,
+)
+
+
+def _turned_imu(changes: StanceChanges) -> Iterator[Finding]:
     """An IMU that is turned about the vertical: its tilts are not those that the ground's force shows."""
-    turn, spread = sides.turn
+    turn, spread = changes.as_is.turn
     if abs(turn) > max(TURNED, 3 * spread):
-        text = f"columns 'imu.{stance.imu.name}.*': the tilts and the ground's force say directions that are "
+        text = f"columns 'imu.{changes.stance.imu.name}.*': the tilts and the ground's force say directions that are "
         valid = f"valid: within {np.degrees(TURNED):.0f} deg; check the IMU's link and rpy in the robot file"
         yield Finding("imu_turned", f"{text}{np.degrees(turn):.0f} deg apart about the vertical ({valid})")
-
-
-def _turned_wrench(stance: Stance, sides: StanceSides) -> _TurnedWrench | None:
-    """The quarter turn that leaves least of the misfit; None where none also follows the motion far better."""
-    if not all(wrench[:, :2].any() for wrench in stance.wrenches):
-        return None  # vertical force cells have no x and y that could be turned
-    moving = sides.moving
-    sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
-    ways = {f"columns 'wrench.{sensor}.*'": [place] for place, sensor in enumerate(sensors)}
-    found = []
-    for columns, places in {**ways, "columns 'wrench.*'": [*range(len(sensors))]}.items():
-        for degrees in QUARTERS:
-            trial = stance.turned_wrenches(places, degrees).sides()
-            if trial.moving < BETTER * moving:
-                found.append(_TurnedWrench(trial.misfit, trial.moving, degrees, columns))
-    return min(found, default=None)
-
-
-def _reversed_joints(stance: Stance, sides: StanceSides) -> dict[str, float]:
-    """What is left of the misfit [m] with a joint between IMU and feet reversed, or with its mirror image, by column.
-
-    Where the force then leans from up still, the joint does not explain what is wrong.
-    """
-    robot = stance.robot
-    tried = {
-        f"column 'joint.{name}.position'": stance.reversed_joint(k).sides()
-        for k, name in enumerate(robot.joint_names)
-        if name in robot.path_joints and np.any(stance.positions[:, k])
-    }
-    for first, second in _mirrored(stance):
-        names = (f"'joint.{robot.joint_names[place]}.position'" for place in (first, second))
-        tried[f"columns {' and '.join(names)}"] = stance.reversed_joint(first).reversed_joint(second).sides()
-    allowed = max(LEANING, BETTER * sides.lean)
-    return {name: trial.misfit for name, trial in tried.items() if trial.lean < allowed}
-
-
-def _mirrored(stance: Stance) -> list[tuple[int, int]]:
-    """Joints of both legs that have the same place in their leg; none where the legs are not alike."""
-    left, right = (
-        [stance.robot.joint_names.index(name) for name in leg] for leg in legs(stance.robot).values()
-    )
-    return list(zip(left, right, strict=True)) if len(left) == len(right) else []
-
-
-def _exchanged_joints(stance: Stance, sides: StanceSides, best: float) -> str | None:
-    """Neighbours in a leg that, exchanged, explain a misfit far better than the `best` [m] of other changes."""
-    robot, allowed = stance.robot, max(LEANING, BETTER * sides.lean)
-    left: dict[str, float] = {}
-    for foot in robot.feet.values():
-        path = robot.joints_between(stance.imu.placement, foot.bush)
-        leg = [place for place, name in enumerate(robot.joint_names) if name in path]
-        for first, second in pairwise(leg):
-            if np.any(stance.positions[:, [first, second]]):
-                trial = stance.exchanged_joints(first, second).sides()
-                names = (f"'joint.{robot.joint_names[place]}.position'" for place in (first, second))
-                left |= {" and ".join(names): trial.misfit} if trial.lean < allowed else {}
-    pair = min(left, key=left.__getitem__, default=None)
-    return pair if pair is not None and left[pair] < min(NOTABLE, BETTER * best) else None
-
-
-def _reversed_components(stance: Stance, sides: StanceSides) -> dict[str, float]:
-    """The same with a component of one or both wrenches reversed, where it also follows the motion far better: a
-    sensor's zero or a mass in the wrong place is no reversed sign."""
-    moment_arms = sides.moment_arms
-    total = moment_arms.sum(axis=(1, 2))
-    moving = usual(total - np.median(total, axis=0))
-    left: dict[str, float] = {}
-    sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
-    for component, part in enumerate(COMPONENTS):
-        if part is None:
-            continue
-        each = [total - 2 * moment_arms[:, k, component] for k in range(len(sensors))]
-        both = total - 2 * moment_arms[:, :, component].sum(axis=1)
-        names = [f"column 'wrench.{sensor}.{part}'" for sensor in sensors]
-        trials = dict(zip(names, each, strict=True))
-        # A foot without load has nothing to reverse: the pair counts only where both take part.
-        if usual(both) < 0.8 * min(usual(one) for one in each):
-            trials[f"columns 'wrench.*.{part}'"] = both
-        for name, trial in trials.items():
-            if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
-                left[name] = usual(trial)
-    # As by software that gives what the robot does to the ground.
-    trial = total - 2 * moment_arms[:, :, 3:].sum(axis=(1, 2))
-    if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
-        left["columns 'wrench.*.torque.*'"] = usual(trial)
-    return left

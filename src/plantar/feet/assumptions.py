@@ -46,6 +46,7 @@ def assumptions(ready: PreparedLogs, feet: Sequence[FootFit], apart: Apart) -> t
         ],
         "wrench_delay": _delays(ready) if ready.sensor_delay.measured else [],
         "bush_position": [place for foot in ready.robot.feet for place in _places(foot, fits)],
+        "joint_compliance": _bending(ready),
         "imu_mount": _turns(ready, fits),
         "between_recordings": []
         if apart.shown is None
@@ -66,6 +67,12 @@ def _delays(ready: PreparedLogs) -> list[Found]:
     return [Found(foot, value, delay.std) for foot, value in delay.feet.items()] or [
         Found("", delay.delay, delay.std)
     ]
+
+
+def _bending(ready: PreparedLogs) -> list[Found]:
+    """Of all joints of the legs together, where the moments of the robot's motion are known."""
+    shown = ready.bending
+    return [] if shown.mean is None else [Found("legs' joints together", shown.mean, shown.std)]
 
 
 def _places(foot: str, fits: Iterable[AxisFit]) -> list[Found]:

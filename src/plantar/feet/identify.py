@@ -101,13 +101,15 @@ def fit_prepared(
         text = f"no foot carries load in any log: {carried:.1f} kg where the robot weighs {robot.mass:.1f} kg"
         valid = "a standing robot, forces in N, masses in kg; 'contact: always' for sensors zeroed under load"
         raise DataError(f"{names}: {text} (valid: {valid})")
-    return_freed(max(log.size for log in logs))  # what preparation took, copies of the process would keep
+    size = max(log.size for log in logs)
+    return_freed(size)  # what preparation took, copies of the process would keep
     told = newton_told(ready)
     ready, feet = (
         _with_imu_right(ready, progress) if told is None else _with_encoders_right(ready, told, progress)
     )
     fitted = with_shared_hysteresis(feet)
     between = between_all(list(fitted.values()))
+    return_freed(size)  # likewise, the fits
     found = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between, residuals)

@@ -8,7 +8,7 @@ from functools import partial
 from math import hypot
 from typing import NamedTuple
 
-from plantar.conventions import Axis
+from plantar.conventions import Array, Axis
 from plantar.errors import DataError
 from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
@@ -37,8 +37,15 @@ from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import Fading, fading, fading_notes, slow_filter
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.imu_filter import imu_filter, with_gyroscopes_on_time
+from plantar.sensors.moments.bent_joints import (
+    JointBending,
+    joint_bending,
+    joint_bending_notes,
+    put_straight,
+)
 from plantar.sensors.moments.moment_errors import MomentErrors, moment_errors
 from plantar.sensors.moments.moment_fit import moments_of
+from plantar.sensors.moments.sensor_errors import BENDING
 from plantar.sensors.moments.sensor_turns import sensor_turn_notes
 from plantar.sensors.moments.torque_delay import torque_delay_notes
 from plantar.sensors.moments.torque_gains import TorqueGain, torque_gain_notes, torque_gains
@@ -53,8 +60,8 @@ class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
 
     `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`; `torque_gains`: see there.
-    `turned`: by foot, a warning that its force sensor is; `imu_turn`: by which all angles were put right.
-    `slow_filter`: that forces and torques are behind, or the others.
+    `turned`: by foot, a warning that its force sensor is; `imu_turn`: by which all angles were put right; `bending`:
+    by which joints were. `slow_filter`: that forces and torques are behind, or the others.
     """
 
     robot: RobotModel
@@ -69,6 +76,7 @@ class PreparedLogs:
     turned: Mapping[str, Note]
     imu_turn: ImuTurn
     slow_filter: Fading | None
+    bending: JointBending
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -121,6 +129,18 @@ def prepare_checked(
     size = max(look.log.size for look in looks)
     return_freed(size)
     found = _recordings(robot, looks, len(logs), settings, delay, progress)
+    steps, balances = any(map(has_steps, found.recordings)), found.moments
+    # Legs that may bend hide what torques read too much: they are asked only where they show it.
+    moments = moments_of(robot, balances, steps, BENDING)
+    bending = joint_bending(robot, moments)
+    if bending.found:
+        del found
+        return_freed(size)
+        done = replace(delay, residuals=())
+        found = _recordings(robot, looks, len(logs), settings, done, progress, bending.compliances)
+    else:
+        moments = moments_of(robot, balances, steps)
+    del balances
     recordings, settings = found.recordings, found.settings
     return_freed(size)
     progress("fit z")
@@ -128,7 +148,6 @@ def prepare_checked(
     vertical = fit_vertical_stiffness(found.heights, robot, gain_reaches(robot, forces))
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     return_freed(size)
-    moments = moments_of(robot, found.moments, any(map(has_steps, recordings)))
     filtered = slow_filter(fading(delay.residuals))
     delay = replace(delay, residuals=())  # both sides of Newton's law in every log: no fit reads them
     return_freed(size)
@@ -142,6 +161,7 @@ def prepare_checked(
         *torque_gain_notes(torques).values(),
         *turned.values(),
         *torque_delay_notes(moments),
+        *joint_bending_notes(robot, bending),
         *fading_notes(filtered),
         *attitude_scale_notes(sum((one.attitude_scale for one in recordings), AttitudeScale())),
     ]
@@ -161,6 +181,7 @@ def prepare_checked(
         turned,
         mount,
         filtered,
+        bending,
     )
 
 
@@ -171,14 +192,16 @@ def prepare_unseen(
     delay: SensorDelay,
     compliance: Mapping[str, float],
     progress: Progress,
+    bends: Array | None = None,
 ) -> list[Recording]:
-    """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N]."""
+    """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N], and
+    by which joints `bends` (joints,) [rad/(N.m)]."""
     looks = looked_at(robot, logs, False)
     if not looks:
         return []
     check_names([look.log for look in looks])
     looks, _ = _on_time(robot, looks, False)
-    recordings = _recordings(robot, looks, 0, settings, delay, progress).recordings
+    recordings = _recordings(robot, looks, 0, settings, delay, progress, bends).recordings
     return [moved_centre(recording, compliance) for recording in recordings]
 
 
@@ -214,8 +237,10 @@ def _recordings(
     settings: FeetSettings,
     delay: SensorDelay,
     progress: Progress,
+    bends: Array | None = None,
 ) -> _Ready:
-    """Logs, the first `fitted` of them to fit, made ready."""
+    """Logs, the first `fitted` of them to fit, made ready; `bends` (joints,): by which joints bend beyond their
+    encoders [rad/(N.m)]."""
     others = f" and {len(looks) - 1} more" if len(looks) > 1 else ""
     progress(f"prepare {looks[0].log.name}{others}")
     tilt_error = sum((look.tilt for look in looks), NO_TILT_ERROR)
@@ -227,7 +252,9 @@ def _recordings(
         return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
 
     def ready(look: FirstLook, role: Role) -> tuple[Recording, Recording | None]:
-        recording = prepare(robot, in_time(robot, look.log, delay), role, look.tilt, tilt_error, highest)
+        log = in_time(robot, look.log, delay)
+        log = log if bends is None else put_straight(robot, log, bends)
+        recording = prepare(robot, log, role, look.tilt, tilt_error, highest)
         # The cutoff may still fall where feet step.
         early = settings.cutoff is not None or not has_steps(recording)
         return recording, usable(recording, highest) if early else None

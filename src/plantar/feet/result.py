@@ -75,6 +75,7 @@ def feet_result(
         models=tuple(_axis_model(fit, ready.imu_turn) for fit in fits),
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
+        joint_compliance=ready.bending.by_joint(robot),
         diagnosis=tuple(limits),
         assumptions=assumptions(ready, found, between),
         stances=tuple(row for each in found for row in each.stances),

@@ -77,9 +77,10 @@ def scored_feet(
         raise DataError(f"the result is about a foot '{strangers[0]}' (valid: {', '.join(robot.feet)})")
     known = {key: value for key, value in found.settings.items() if key in FeetSettings.__dataclass_fields__}
     compliance = {foot: found.compliance.get(foot, 0.0) for foot in robot.feet}
+    bends = np.array([found.joint_compliance.get(joint, 0.0) for joint in robot.joint_names])
     delay = _sensor_delay(found.sensor_delay)
     recordings = prepare_unseen(
-        robot, logs_of(logs, robot, LONGEST), FeetSettings(**known), delay, compliance, progress
+        robot, logs_of(logs, robot, LONGEST), FeetSettings(**known), delay, compliance, progress, bends
     )
     rows: list[ValidationRow] = []
     for foot in sorted(feet):

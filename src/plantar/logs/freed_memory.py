@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from functools import cache
 
-LARGE = 2**24  # bytes of a log's numbers: work on it takes some ten times that
+LARGE = 2**20  # bytes of a log's numbers: work on it takes some ten times that
 KEPT = 2**30  # bytes that may lie free before they are handed back
 LARGEST_OF_HEAP = 2**25  # bytes of a block that may come of those: the most that glibc takes
 

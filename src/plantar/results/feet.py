@@ -56,6 +56,7 @@ class FeetResult:
         validation: errors [N·m] on fitted (direct) and unseen (cross) motions. notes: what was assumed.
         robot_model: path of the URDF and geometry of the feet [m, rad], for exports.
         sensor_delay: how late the sensors are [s]. compliance: of each foot along z [m/N], 0 where not known.
+        joint_compliance: of each joint that bends beyond its encoder, by which angles were put right [rad/(N·m)].
         diagnosis: what limits each number. assumptions: what may be wrong about the robot, as its file says, and what
             was found of it. comparisons: the same logs under other choices.
         campaign: what `plantar demo` adds, as plain data; None elsewhere.
@@ -87,6 +88,7 @@ class FeetResult:
     models: tuple[AxisModel, ...] = ()
     sensor_delay: DelayEstimate | None = None
     compliance: Mapping[str, float] = field(default_factory=dict)
+    joint_compliance: Mapping[str, float] = field(default_factory=dict)
     diagnosis: tuple[Diagnosis, ...] = ()
     assumptions: tuple[Assumption, ...] = ()
     comparisons: tuple[Comparison, ...] = ()
@@ -187,6 +189,8 @@ class FeetResult:
         if self.sensor_delay is not None:
             content["latency"] = asdict(self.sensor_delay)
         content["compliance"] = dict(self.compliance)
+        if self.joint_compliance:
+            content["joint_compliance"] = dict(self.joint_compliance)
         content["diagnosis"] = [asdict(row) for row in self.diagnosis]
         for key in _IF_ANY:
             if rows := getattr(self, key):
@@ -249,6 +253,7 @@ class FeetResult:
             models=tuple(AxisModel.from_dict(row, f"laws.{k}", path) for k, row in enumerate(laws)),
             sensor_delay=None if delay is None else row_of(DelayEstimate, delay, "latency", path),
             compliance=value_of(dict[str, float], content, "compliance", path, {}),
+            joint_compliance=value_of(dict[str, float], content, "joint_compliance", path, {}),
             diagnosis=rows_of(Diagnosis, content, "diagnosis", path),
             assumptions=rows_of(Assumption, content, "assumptions", path),
             comparisons=rows_of(Comparison, content, "comparisons", path),

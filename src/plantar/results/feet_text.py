@@ -31,7 +31,6 @@ PRINTED_IN = {
 NOT_FOUND = {
     "wrench_crosstalk": "like a bush that is elsewhere: counted in bush_position",
     "encoder_zero": "taken up by the offset of each recording",
-    "joint_compliance": "not from logs of standing and walking",
     "link_mass": "in how well wrench_delay is known",
     "link_com": "in how well wrench_delay is known",
     "total_mass": "not from the feet's forces, which it calibrates",

@@ -3,42 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
+from before_gears import before_gears
 from biped import TRUTH, record, sway
 from biped_robot import FEET, make_robot
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.joint_compliance import NAME
+from plantar.feet.interval_width.joint_compliance import NAME, joint_compliance_causes
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
-from plantar.robot.model import RobotModel
+from plantar.sensors.moments.bent_joints import JointBending
 
 COMPLIANCE = 1e-4  # rad/(N.m)
 KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
-ANKLES = ("ankle_pitch", "ankle_roll")
-
-
-def bent(robot: RobotModel, log: MotionLog) -> MotionLog:
-    """The log with encoders on the motor's side of ankles that bend: what a joint turns under the foot's wrench lacks
-    in its reading. Moments by Pinocchio's Jacobians, sample by sample."""
-    model = robot.model
-    data = model.createData()
-    joints = [f"{foot}_{ankle}" for foot in FEET for ankle in ANKLES]
-    moments = np.zeros((len(log), len(joints)))
-    for row, positions in enumerate(log.positions(robot)):
-        pin.computeJointJacobians(model, data, positions)
-        for foot in FEET:
-            parent, placement = robot.frame(robot.feet[foot].wrench.placement)
-            jacobian = placement.inverse().action @ pin.getJointJacobian(model, data, parent, pin.LOCAL)
-            turned = jacobian.T @ (robot.feet[foot].wrench.sign * log.wrench(foot)[row])
-            moments[row] += [turned[model.idx_vs[model.getJointId(name)]] for name in joints]
-    columns = [f"joint.{name}.position" for name in joints]
-    read = [log.column(name) - COMPLIANCE * own for name, own in zip(columns, moments.T, strict=True)]
-    return log.with_columns(dict(zip(columns, read, strict=True)))
+JOINTS = [f"{foot}_{ankle}" for foot in FEET for ankle in ("ankle_pitch", "ankle_roll")]
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +32,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> tuple[FeetResult, FeetR
     for name, compliance in (("stiff", 0.0), ("bending", COMPLIANCE)):
         robot = make_robot(folder / name, uncertainty={"joint_compliance": compliance, "wrench_gain": 0.0})
         logs = logs or [
-            bent(robot, record(sway(f"sway_{seed}", seed=seed, duration=20.0))) for seed in (1, 2)
+            before_gears(robot, record(sway(f"sway_{seed}", seed=seed, duration=20.0)), COMPLIANCE, JOINTS)
+            for seed in (1, 2)
         ]
         found.append(identify_feet(robot, logs, settings=KNOWN))
     return found[0], found[1]
@@ -79,3 +62,9 @@ def test_it_stands_among_the_causes_with_its_share(results: tuple[FeetResult, Fe
     assert max(shares[0]) == 0.0
     assert min(shares[1]) > 0.5
     assert any("joint_compliance" in row.text for row in results[1].diagnosis)
+
+
+@pytest.mark.parametrize("joints", [0, 3], ids=["a foot alone", "joints that do not bend"])
+def test_nothing_bends(joints: int) -> None:
+    stiff = JointBending(np.zeros(joints), np.zeros((joints, joints)))
+    assert joint_compliance_causes(Mock(), Mock(), stiff) == []

@@ -70,6 +70,7 @@ def ready(recording: Recording, delay: Late = NEWTON) -> PreparedLogs:
         turned={},
         imu_turn=ImuTurn.unknown(0.0),
         slow_filter=None,
+        bending=none,
     )
 
 

@@ -71,6 +71,7 @@ def ready(recording: Recording) -> PreparedLogs:
         torque_gains={},
         turned={},
         slow_filter=None,
+        bending=none,
     )
 
 

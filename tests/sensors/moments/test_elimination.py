@@ -19,8 +19,9 @@ def columns() -> Array:
 
 def test_columns_beside_others_have_the_coefficients_and_deviations_of_a_fit_of_all(columns: Array) -> None:
     products, deviations = columns.mT @ columns, np.array([0.5, 2.0, 1.0, 0.3, 0.1, 0.2, 3.0, 1.0])
-    everything = products.sum(axis=0)
-    alone = beside(products, deviations[KEPT:])
+    weights = np.array([1.0, 3.0, 0.5])
+    everything = np.tensordot(weights, products, 1)
+    alone = beside(products, weights, deviations[KEPT:])
     both = alone.products.sum(axis=0)
     found, expected = coefficients(both, deviations[:KEPT]), coefficients(everything, deviations)
     np.testing.assert_allclose(found, expected[:KEPT], rtol=1e-10)

@@ -73,12 +73,12 @@ def misread_joint_notes(robot: RobotModel, tangent: Tangent, wide: AxisFit) -> l
     """
     alone = tangent.least_squares
     each = [_columns(robot, one, wide) for one in tangent.recordings]
-    told = [np.column_stack([*columns.values()]) for columns in each]
-    needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in each[0]])
+    names, told = each[0][0], [columns for _, columns in each]
+    needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in names])
     left = needed * least_left(tangent.blocks, told) / alone.squares
     if left.min() > 1:
         return []
-    close = {which: column for column, which in enumerate(each[0]) if left[column] <= ALIKE}
+    close = {which: column for column, which in enumerate(names) if left[column] <= ALIKE}
     fits = (
         _misread(*which, tangent.beside([own[:, [column]] for own in told]), wide, alone.values)
         for which, column in close.items()
@@ -110,10 +110,10 @@ def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array)
     return Misread(joint, kind, size, fit.squares, not wide.holds(moved))
 
 
-def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tuple[str, str], Array]:
-    """Torque (n,) at the rows of a fit by joint and kind: for each share by which a joint turns more than is read, for
-    each second by which it is read later, for each radian by which it stays behind its own rate; and for each radian by
-    which the IMU tilts with each m/s²."""
+def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> tuple[list[tuple[str, str]], Array]:
+    """Joints and kinds (c,), and the torque (n, c) of each at the rows of a fit: for each share by which a joint turns
+    more than is read, for each second by which it is read later, for each radian by which it stays behind its own rate;
+    and for each radian by which the IMU tilts with each m/s²."""
     columns = dict[tuple[str, str], Array]()
     for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
         own = shares[:, ROTATIONAL_AXES.index(fit.axis)]
@@ -126,7 +126,8 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> dict[tupl
     if late := [column for (_, kind), column in columns.items() if kind == "late"]:
         columns[f"all joints to the {fit.foot} foot", "together"] = np.sum(late, axis=0)
     tilts = _tilts(robot, recording, fit.foot)[:, ROTATIONAL_AXES.index(fit.axis)]
-    return columns | {("the IMU", "soft"): tilts @ fit.values[:2]}
+    columns["the IMU", "soft"] = tilts @ fit.values[:2]
+    return [*columns], np.column_stack([*columns.values()])
 
 
 def _tilts(robot: RobotModel, recording: Recording, foot: str) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -18,17 +19,22 @@ class Beside(NamedTuple):
     shares: Array
 
 
-def beside(products: Array, deviations: Array) -> Beside:
-    """Beside the last columns of `products` (parts, k + 1 + others, ...), of which coefficients are drawn towards
-    nothing with `deviations` (others,)."""
-    kept = products.shape[-1] - len(deviations)
-    own, across, others = products[:, :kept, :kept], products[:, kept:, :kept], products[:, kept:, kept:]
+def beside(products: Sequence[Array], weights: Array, deviations: Array) -> Beside:
+    """Beside the last columns of `products`, (k + 1 + others, ...) of each part, times its own of `weights` (parts,);
+    coefficients of these columns are drawn towards nothing with `deviations` (others,)."""
+    kept = len(products[0]) - len(deviations)
+    total: Array = np.zeros_like(products[0])
+    for part, weight in zip(
+        products, weights, strict=True
+    ):  # one by one: those of all logs take tens of megabytes
+        total += weight * part
     known = np.diag(deviations**-2.0)
-    share = np.linalg.solve(_positive(others.sum(axis=0)) + known, across.sum(axis=0))
-    taken = share.T @ across
+    share = np.linalg.solve(_positive(total[kept:, kept:]) + known, total[kept:, :kept])
+    left = np.vstack([np.eye(kept), -share])
     # What the others' own priors say against a share of them belongs to all parts alike.
-    without = own - taken - taken.mT + share.T @ (others @ share) + share.T @ known @ share / len(products)
-    return Beside(without, -share)
+    alike = share.T @ known @ share / len(products)
+    own = [weight * (left.T @ part @ left) + alike for part, weight in zip(products, weights, strict=True)]
+    return Beside(np.array(own), np.asarray(-share))
 
 
 def coefficients(products: Array, deviations: Array) -> Array:

@@ -16,6 +16,8 @@ from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import RobotModel
 from plantar.sensors.model_errors import imu_turn_slopes, link_errors
+from plantar.sensors.moments.law_bending import by_bending
+from plantar.sensors.moments.leg_torques import leg_joints
 from plantar.sensors.moments.sensor_errors import bush_directions, sensor_errors
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
@@ -57,7 +59,10 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     zeros = [-channel for one in read for channel in one.transfer.transpose(2, 0, 1)]
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
-    by_motion = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
+    by_bends = by_bending(robot, residual, motion, leg_joints(robot))
+    if centre is not None:  # moments alone show no bending legs beside torques that read too much
+        by_bends = [np.zeros_like(slope) for slope in by_bends]
+    by_motion = [*-by_mount, *-np.array(by_bends), *residual.rates, residual.by_encoders, -by_gyroscope]
     # Some at a time and in single precision: all together would be the largest array of any log.
     errors = link_errors(robot)
     by_links = [

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 from plantar.sensors.load_errors import APART
-from plantar.sensors.moments.elimination import beside, coefficients
+from plantar.sensors.moments.elimination import Beside, beside, coefficients
 from plantar.sensors.moments.law_rows import BAND, QUICKER, law_rows
 from plantar.sensors.moments.sensor_errors import ANOTHER_UNIT, prior_deviations, zero_deviations
 from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
@@ -37,13 +37,13 @@ class MomentErrors(NamedTuple):
 class RowProducts(NamedTuple):
     """What each row of one log says.
 
-    `products` (rows, parts, c + 1, c + 1): of what is missing and its columns in each part of the log, without what
-    the sensors' noise adds to them; `power` (rows, c + 1, c + 1): their means over all samples, with it. `share`: of a
-    sample, that counts as an independent one. `zeros` (z,): deviations of the log's own zeros, which are the last
+    `products`, (parts, c + 1, c + 1) of each row: of what is missing and its columns in each part of the log, without
+    what the sensors' noise adds to them. `power` (rows, c + 1, c + 1): their means over all samples, with it. `share`:
+    of a sample, that counts as an independent one. `zeros` (z,): deviations of the log's own zeros, which are the last
     columns: at an arm that moves with the robot, a zero does not stay a constant.
     """
 
-    products: Array
+    products: list[Array]
     power: Array
     share: float
     zeros: Array
@@ -61,30 +61,38 @@ def row_products(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) 
     for row in law_rows(robot, residual, steps):
         stride = 1 if steps else max(1, round(1 / (KEPT_PER_BAND * BAND * row.period)))
         own = row.signals[::stride]
-        with_noise, noise = _products(own), np.array([_products(band) for band in row.noise])
-        products.append(with_noise - np.tensordot(_below_to_above(row.period) / stride, noise, 1))
-        power.append(with_noise.sum(axis=0) / len(own))
+        products.append(_products(own))
+        power.append(products[-1].sum(axis=0) / len(own))
+        if not steps:
+            for factor, band in zip(_below_to_above(row.period) / stride, row.noise, strict=True):
+                products[-1] -= factor * _products(band)
         share = stride * row.period / APART
-    return RowProducts(np.array(products), np.array(power), share, zero_deviations(robot))
+    return RowProducts(products, np.array(power), share, zero_deviations(robot))
 
 
 def weighed(rows: RowProducts, prior: Array) -> MomentErrors:
     """Rows by what a fit to this log alone leaves of each; prior (k,): deviations of the sensors' coefficients."""
     links = rows.power.shape[-1] - 1 - len(prior) - len(rows.zeros)
-    own, shares = beside(_together(rows, rows.power[:, 0, 0]), rows.zeros)
+    own, shares = _beside_zeros(rows, rows.power[:, 0, 0])
     values = coefficients(own.sum(axis=0), np.append(prior, np.ones(links)))
     remains = np.append(1.0, -values)
     remains = np.append(remains, shares @ remains)
     left = np.einsum("rjk,j,k->r", rows.power, remains, remains)
-    own, shares = beside(_together(rows, left), rows.zeros)
+    own, shares = _beside_zeros(rows, left)
     kept = np.vstack([np.eye(len(shares.T)), shares])
     power = kept.T @ np.mean(rows.power / left[:, None, None], axis=0) @ kept
     return MomentErrors(own, power, shares / rows.zeros[:, None])
 
 
-def _together(rows: RowProducts, left: Array) -> Array:
-    """Products of all rows, by what is `left` of each (rows,), mean squares."""
-    return np.asarray(np.tensordot(rows.share / left, rows.products, 1))
+def _beside_zeros(rows: RowProducts, left: Array) -> Beside:
+    """Products of all rows, by what is `left` of each (rows,), mean squares, beside the log's own zeros."""
+    weights = rows.share / left
+    # Part by part: the products of all rows are the largest arrays of any log, and another of their size would be.
+    parts = [
+        np.sum([weight * own[part] for weight, own in zip(weights, rows.products, strict=True)], axis=0)
+        for part in range(PARTS)
+    ]
+    return beside(parts, np.ones(PARTS), rows.zeros)
 
 
 def _products(columns: NDArray[Any]) -> Array:

@@ -11,18 +11,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.robot.model import RobotModel
 from plantar.sensors.moments.elimination import beside, coefficients, information
 from plantar.sensors.moments.moment_errors import MomentErrors
-from plantar.sensors.moments.sensor_errors import ANOTHER_UNIT, LOOSE, prior_deviations
+from plantar.sensors.moments.sensor_errors import (
+    ANOTHER_UNIT,
+    LOOSE,
+    STIFF,
+    compliance_columns,
+    prior_deviations,
+)
 
 STRAINED = 2.0  # deviations of its prior and its own, beyond which a gain is of another unit
 # Share of a torque, which landings behind filters of unlike sensors make of it in every step of a simulated walk: all
 # parts of a walk agree in it.
 LANDINGS = 0.01
+LANDINGS_BEND = (
+    0.006  # rad, likewise: how far they seem to bend each joint with the robot's weight at a metre
+)
 CHANCE = 0.01  # that sensors without a fault are called wrong, by deviations that are on the safe side
 
 
@@ -40,18 +49,22 @@ class MomentFit(NamedTuple):
     parts: list[Part]
 
 
-def moments_of(robot: RobotModel, logs: Sequence[MomentErrors], steps: bool) -> MomentFit | None:
-    """The fit over what each log tells, None without one; `steps`: whether feet step in some."""
+def moments_of(
+    robot: RobotModel, logs: Sequence[MomentErrors], steps: bool, bending: float = STIFF
+) -> MomentFit | None:
+    """The fit over what each log tells, None without one; `steps`: whether feet step in some; `bending`: as of
+    `prior_deviations`."""
     if not logs:
         return None
-    fit = solved(logs, prior_deviations(robot))
+    fit = solved(logs, prior_deviations(robot, bending=bending))
     # Only another unit is so far off: the prior that keeps a gain from passing for other errors would hide it.
-    free = solved(logs, prior_deviations(robot, ANOTHER_UNIT))
+    free = solved(logs, prior_deviations(robot, ANOTHER_UNIT, STIFF))
     if _far_off(free, len(robot.feet)):
         fit = free
     if steps:
         alike = np.zeros(len(fit.values))
         alike[: 2 * len(robot.feet)] = LANDINGS**2
+        alike[compliance_columns(robot)] = (LANDINGS_BEND / (robot.mass * GRAVITY)) ** 2
         fit = MomentFit(fit.values, [*fit.parts, Part(np.diag(alike), MOST_FREEDOM)])
     return fit
 
@@ -77,10 +90,11 @@ def is_wrong(values: Array, parts: Sequence[Part], some: list[int]) -> bool:
 def solved(logs: Sequence[MomentErrors], prior: Array) -> MomentFit:
     """The fit with deviations (k,) of the sensors' coefficients before the moments are asked, `prior`."""
     links = logs[0].products.shape[-1] - 1 - len(prior)  # of the one robot of all logs
+    each = [part for log in logs for part in log.products]
     left = np.array([log.power[0, 0] for log in logs])
     for _ in range(2):  # a robot that a hand steadies misses more than one that stands alone
-        weighed = [log.products / by for log, by in zip(logs, left, strict=True)]
-        parts, shares = beside(np.concatenate(weighed), np.ones(links))
+        weights = np.repeat(1 / left, [len(log.products) for log in logs])
+        parts, shares = beside(each, weights, np.ones(links))
         both = parts.sum(axis=0)
         values = coefficients(both, prior)
         remains = np.append(1.0, -values)

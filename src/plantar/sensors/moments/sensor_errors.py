@@ -1,8 +1,9 @@
 """What a foot's force sensor, the IMU and the clocks may get wrong, and by how much before the moments are asked.
 
 The columns of a fit of moments are, in this order: torques about pitch of each foot, torques about roll of each foot,
-what else each foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the
-encoders, of the gyroscope, and of all torques about pitch and about roll behind the forces.
+what else each foot's sensor may get wrong, the IMU's turn about its three axes, the compliances of the legs' joints,
+and the delays of each foot, of the encoders, of the gyroscope, and of all torques about pitch and about roll behind the
+forces.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import pinocchio as pin
 from plantar.conventions import GRAVITY, Array
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
+from plantar.sensors.moments.leg_torques import leg_joints
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 ANOTHER_UNIT = 10.0  # share: likewise, where it may be kgf.m for N.m
@@ -20,20 +22,31 @@ LEAST_ARM = 0.003  # m, likewise as LEAST_GAIN
 LEAST_BETWEEN = 0.001  # N.m/N, likewise
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 LATE_TORQUES = 0.01  # s, of torques behind the forces of the same sensors: mostly read together
+BENDING = 0.3  # rad, by which a joint may bend beyond its encoder with the robot's weight at a metre
+STIFF = 1e-4  # rad, likewise, of one that bends by nothing
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
 ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
 
 
-def prior_deviations(robot: RobotModel, gains: float = LOOSE) -> Array:
+def prior_deviations(robot: RobotModel, gains: float = LOOSE, bending: float = BENDING) -> Array:
     """Deviations of the sensors' coefficients before the moments are asked, (k,): of all columns before the links'.
 
-    gains: those of the torques' gains.
+    gains: those of the torques' gains; bending: of each joint of the legs [rad], with the robot's weight at a metre.
     """
     feet = len(robot.feet)
     of_feet = np.tile(sensor_errors(robot)[1], feet)
     late = [*np.full(feet + 2, LATE), *np.full(2, LATE_TORQUES)]
-    return np.concatenate([np.full(2 * feet, gains), of_feet, np.full(3, MOUNT), late])
+    bends = np.full(len(leg_joints(robot)), bending / (robot.mass * GRAVITY))
+    return np.concatenate([np.full(2 * feet, gains), of_feet, np.full(3, MOUNT), bends, late])
+
+
+def compliance_columns(robot: RobotModel) -> slice:
+    """The columns of the joints' compliances, one for each of `leg_joints`."""
+    start = (
+        len(robot.feet) * (2 + len(sensor_errors(robot)[1])) + 3
+    )  # behind gains, sensors and the IMU's turn
+    return slice(start, start + len(leg_joints(robot)))
 
 
 def turn_columns(robot: RobotModel) -> dict[str, slice]:

@@ -1,0 +1,128 @@
+"""Joints that bend where their encoders do not see it, such as those behind gears, and what Newton's law shows of them.
+
+The feet then push from other places and in other directions than the encoders say. A leg that gives way tilts its
+force sensor, which the horizontal forces show, and shifts the body over the foot, which the moments show.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array
+from plantar.estimation.quantiles import MOST_FREEDOM
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
+from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
+from plantar.sensors.moments.sensor_errors import compliance_columns
+
+BENT = "joints_bend"
+# rad, with the robot's weight at a metre: less passes for none. A URDF's legs that are a little too short do as much.
+USUAL = 0.004
+SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
+
+
+class JointBending(NamedTuple):
+    """How far joints bend beyond their encoders, in the order of the robot's joints.
+
+    `compliances` (joints,) [rad/(N.m)] that logs are put right by, and what is left open of them, `covariance` (joints,
+    joints). `mean`, `std`: what the moments show of the legs' joints together; None where they show nothing.
+    """
+
+    compliances: Array
+    covariance: Array
+    mean: float | None = None
+    std: float | None = None
+
+    @property
+    def found(self) -> bool:
+        """Whether logs are to be put right."""
+        return bool(self.compliances.any())
+
+    def by_joint(self, robot: RobotModel) -> dict[str, float]:
+        """The compliance of each joint that logs are put right by."""
+        pairs = zip(robot.joint_names, self.compliances.tolist(), strict=True)
+        return {name: value for name, value in pairs if value}
+
+    @classmethod
+    def told(cls, robot: RobotModel) -> JointBending:
+        """What the robot file allows for, the same in all joints."""
+        joints = len(robot.joint_names)
+        variance = robot.uncertainty.joint_compliance**2
+        return cls(np.zeros(joints), np.full((joints, joints), variance))
+
+
+def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
+    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs.
+
+    Compliances are as large as each other within their own size, which the moments tell; the robot file's, where that
+    is larger.
+    """
+    told = JointBending.told(robot)
+    if fit is None:
+        return told
+    columns, legs = compliance_columns(robot), leg_joints(robot)
+    values, count = fit.values[columns], len(legs)
+    parts = [Part(one.covariance[columns, columns], one.freedom) for one in fit.parts]
+    covariance = np.sum([one.covariance for one in parts], axis=0)
+    weights = np.linalg.solve(covariance, np.ones(count))
+    weights /= weights.sum()
+    mean, std = float(weights @ values), float(np.sqrt(weights @ covariance @ weights))
+    load, alike = robot.mass * GRAVITY, np.ones((count, count)) + np.eye(count)
+
+    def unlikely(size: float) -> float:
+        total = covariance + size**2 * alike
+        return float(np.linalg.slogdet(total)[1] + values @ np.linalg.solve(total, values))
+
+    size = robot.uncertainty.joint_compliance
+    unsure = [*parts, Part((USUAL / load) ** 2 * alike, MOST_FREEDOM)]
+    deviations = np.sqrt(np.sum([np.diag(one.covariance) for one in unsure], axis=0))
+    gives_way = mean > 0 and bool((values > -SHOWN * deviations).all())  # no joint bends against its load
+    # Of joints that are alike, the mean shows more.
+    shown = np.append(values, mean), np.vstack([np.eye(count), weights])
+    unsure = [Part(shown[1] @ one.covariance @ shown[1].T, one.freedom) for one in unsure]
+    if gives_way and any(is_wrong(shown[0], unsure, some) for some in ([count], [*range(count)])):
+        size = max(size, min(SIZES / load, key=unlikely))
+    if not size:
+        return told._replace(mean=mean, std=std)
+    gain = np.linalg.solve(covariance + size**2 * alike, size**2 * alike)
+    spread = np.zeros((len(told.compliances), count))
+    for place, joints in enumerate(legs):
+        spread[joints, place] = 1.0
+    left = size**2 * alike @ (np.eye(count) - gain)
+    return JointBending(spread @ (values @ gain), spread @ left @ spread.T, mean, std)
+
+
+def joint_bending_notes(robot: RobotModel, bending: JointBending) -> list[Note]:
+    """By how much joints were taken to bend, where logs were put right."""
+    if not bending.found:
+        return []
+    stds = np.sqrt(np.diag(bending.covariance))
+    legs = [joints[0] for joints in leg_joints(robot)]
+    each = ", ".join(
+        f"{robot.joint_names[joint]} {1e3 * bending.compliances[joint]:.3f} ± {1e3 * NORMAL95 * stds[joint]:.3f}"
+        for joint in legs
+    )
+    text = (
+        f"the moments of the robot's motion show joints that bend beyond their encoders, as behind gears: {each} "
+        "mrad/(N·m) (95 %; the other legs' likewise). Angles are put right by it, and what it leaves open widens K and "
+        "C (encoders on the links' side of the gears see all of it)"
+    )
+    return [Note(BENT, "info", text)]
+
+
+def put_straight(robot: RobotModel, log: MotionLog, compliances: Array) -> MotionLog:
+    """The log with joints where their links are, which bend by `compliances` (joints,) beyond their encoders; its
+    sensors were read together."""
+    if not compliances.any():
+        return log
+    positions = log.positions(robot)
+    wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
+    bent = positions + compliances * np.nan_to_num(leg_torques(robot, positions, wrenches))
+    columns = {
+        f"joint.{robot.joint_names[place]}.position": bent[:, place] for place in np.flatnonzero(compliances)
+    }
+    return log.with_columns({name: values for name, values in columns.items() if log.has(name)})

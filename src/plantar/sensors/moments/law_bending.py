@@ -1,0 +1,48 @@
+"""How Newton's law changes as joints bend beyond their encoders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.dynamics import Contact
+from plantar.dynamics.equation import equation_of
+from plantar.dynamics.motion import Motion
+from plantar.robot.model import RobotModel
+from plantar.sensors.moments.leg_torques import leg_torques
+from plantar.sensors.newton_euler import NewtonEulerResidual
+from plantar.sensors.newton_sides import carried
+
+STEP = 1e-7  # rad/(N.m), for the slope: far below what any joint bends, far above rounding
+
+
+def by_bending(
+    robot: RobotModel, residual: NewtonEulerResidual, motion: Motion, legs: Sequence[Sequence[int]]
+) -> list[Array]:
+    """How what is predicted beyond the measured changes as each group of joints of `legs` bends, (n, 6) [N, N.m per
+    rad/(N.m)]. motion: of the samples of the residual."""
+    equation = equation_of(robot.floating_model)
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
+    torques = leg_torques(robot, motion.positions, residual.readings)
+
+    def missing(bends: Array) -> Array:
+        rates = np.gradient(bends, residual.pair.period, axis=0)
+        bent = replace(
+            motion,
+            positions=motion.positions + bends,
+            velocities=motion.velocities + rates,
+            accelerations=motion.accelerations + np.gradient(rates, residual.pair.period, axis=0),
+        )
+        transfers = [equation.base_transfer(bent.positions, contact) for contact in contacts]
+        predicted = equation.base_wrenches(bent, residual.parameters[None])[0]
+        return np.asarray(predicted - np.sum(carried(transfers, residual.readings), axis=0))
+
+    slopes = []
+    for joints in legs:
+        bends = np.zeros_like(torques)
+        bends[:, joints] = STEP * torques[:, joints]
+        slopes.append((missing(bends) - missing(-bends)) / (2 * STEP))
+    return slopes

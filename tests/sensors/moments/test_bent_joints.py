@@ -1,0 +1,168 @@
+"""Joints that bend beyond their encoders: an arm sweep of the twin, read before gears."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from before_gears import before_gears
+from feet_trials import without
+from moments import fit_moments
+from plantar.conventions import NORMAL95
+from plantar.dynamics import Contact
+from plantar.dynamics.equation import equation_of
+from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
+from plantar.feet.prepare_log import checked
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.sensors.moments.bent_joints import (
+    BENT,
+    JointBending,
+    joint_bending,
+    joint_bending_notes,
+    put_straight,
+)
+from plantar.sensors.moments.law_bending import by_bending
+from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
+from plantar.sensors.moments.sensor_errors import BENDING
+from plantar.sensors.newton_euler import CUTOFF, newton_euler_residuals
+from plantar.sensors.newton_sides import carried
+from plantar.twin import PAPER, play_all
+from plantar.twin.robots import hrp2
+from twin_samples import walked
+
+COMPLIANCE = 1e-4  # rad/(N.m)
+LEGS = [f"{side}LEG_JOINT{place}" for side in "LR" for place in range(6)]
+ANKLES = [name for name in LEGS if name[-1] in "45"]
+
+
+@pytest.fixture(scope="module")
+def twin() -> RobotModel:
+    return hrp2.robot()
+
+
+@pytest.fixture(scope="module")
+def sweep(twin: RobotModel) -> MotionLog:
+    return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+
+
+def found(twin: RobotModel, log: MotionLog, *, steps: bool = False) -> JointBending:
+    [residual] = newton_euler_residuals(twin, log)
+    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING))
+
+
+def of(twin: RobotModel, bending: JointBending, name: str) -> tuple[float, float]:
+    """Compliance of a joint, and its deviation."""
+    place = twin.joint_names.index(name)
+    return float(bending.compliances[place]), float(np.sqrt(bending.covariance[place, place]))
+
+
+def test_stiff_joints_stay_as_they_are_read(twin: RobotModel, sweep: MotionLog) -> None:
+    bending = found(twin, sweep)
+    assert not bending.found
+    assert not bending.covariance.any()
+    assert bending.mean is not None
+    assert bending.std is not None
+    assert abs(bending.mean) < NORMAL95 * bending.std < COMPLIANCE
+    assert joint_bending_notes(twin, bending) == []
+    assert put_straight(twin, sweep, bending.compliances) is sweep
+
+
+def test_moments_alone_show_no_bending(twin: RobotModel, sweep: MotionLog) -> None:
+    """Without an accelerometer no horizontal force shows how a sensor is tilted."""
+    bending = found(twin, without(before_gears(twin, sweep, COMPLIANCE, LEGS), "linear_acceleration"))
+    assert not bending.found
+    assert bending.mean == pytest.approx(0.0, abs=1e-9)
+
+
+def test_joints_that_bend_are_found_and_logs_put_right(twin: RobotModel, sweep: MotionLog) -> None:
+    bent = before_gears(twin, sweep, COMPLIANCE, LEGS)
+    bending = found(twin, bent)
+    assert bending.found
+    for name in LEGS:
+        value, std = of(twin, bending, name)
+        assert value == pytest.approx(COMPLIANCE, abs=2.5 * std)
+        assert std < COMPLIANCE
+    assert set(bending.by_joint(twin)) == set(LEGS)
+    straight = put_straight(twin, bent, bending.compliances)
+    for name in ("LLEG_JOINT3", "LLEG_JOINT4", "RLEG_JOINT4"):
+        right, read, now = (log.column(f"joint.{name}.position") for log in (sweep, bent, straight))
+        left = np.abs(1 - of(twin, bending, name)[0] / COMPLIANCE) * np.abs(read - right)
+        assert np.allclose(np.abs(now - right), left, atol=1e-4)
+    (note,) = joint_bending_notes(twin, bending)
+    assert (note.code, note.severity) == (BENT, "info")
+    assert all(name in note.text for name in LEGS[:6])
+
+
+def test_ankles_alone_that_bend_are_told_from_knees(twin: RobotModel) -> None:
+    walk = checked(twin, walked())
+    bending = found(twin, before_gears(twin, walk, 2 * COMPLIANCE, ANKLES), steps=True)
+    ankle, knee = (of(twin, bending, name) for name in ("LLEG_JOINT4", "LLEG_JOINT3"))
+    assert ankle[0] == pytest.approx(2 * COMPLIANCE, abs=2.5 * ankle[1])
+    assert ankle[0] > 3 * abs(knee[0])
+
+
+def test_nothing_bends_against_its_load(twin: RobotModel, sweep: MotionLog) -> None:
+    """What looks so is another fault, and no log is put right by it."""
+    assert not found(twin, before_gears(twin, sweep, -COMPLIANCE, LEGS)).found
+
+
+def test_walks_show_it_too(twin: RobotModel) -> None:
+    walk = checked(twin, walked())
+    assert not found(twin, walk, steps=True).found
+    bending = found(twin, before_gears(twin, walk, COMPLIANCE, LEGS), steps=True)
+    value, std = of(twin, bending, "LLEG_JOINT3")
+    assert value == pytest.approx(COMPLIANCE, abs=3 * std)
+    assert std < 0.2 * COMPLIANCE
+
+
+def test_what_the_robot_file_allows_for_is_all_that_is_known_without_moments(
+    twin: RobotModel, sweep: MotionLog
+) -> None:
+    """And more than what is known with them."""
+    unsure = replace(twin, uncertainty=replace(twin.uncertainty, joint_compliance=COMPLIANCE))
+    alone = joint_bending(unsure, None)
+    assert not alone.found
+    assert np.allclose(alone.covariance, COMPLIANCE**2)
+    assert alone.mean is None
+    told = found(unsure, sweep)
+    knee = of(unsure, told, "LLEG_JOINT3")[1]
+    assert 0 < knee < 0.5 * COMPLIANCE
+
+
+def test_the_law_changes_as_with_joints_that_are_read_otherwise(twin: RobotModel, sweep: MotionLog) -> None:
+    """Against both sides anew, of a log whose knees are read as if they bent the other way; slow parts aside."""
+    knees = leg_joints(twin)[3]
+    [residual] = newton_euler_residuals(twin, sweep)
+    equation = equation_of(twin.floating_model)
+    names = [twin.joint_names[joint] for joint in knees]
+    rows = []
+    for log in (sweep, before_gears(twin, sweep, -COMPLIANCE, names)):
+        signals = inertial_signals(twin, log, CUTOFF)
+        motion = inertial_motion(twin, equation, signals, residual.kept)
+        contacts = [Contact(*twin.frame(foot.wrench.placement)) for foot in twin.feet.values()]
+        transfers = [equation.base_transfer(motion.positions, contact) for contact in contacts]
+        predicted = equation.base_wrenches(motion, residual.parameters[None])[0]
+        rows.append(predicted - np.sum(carried(transfers, residual.readings), axis=0))
+    motion = inertial_motion(twin, equation, residual.signals, residual.kept)
+    (slope,) = by_bending(twin, residual, motion, [knees])
+    changed = (rows[1] - rows[0]) / COMPLIANCE
+    for row in (0, 2, 4):  # forward, up, pitch: where knees act
+        assert np.std(slope[:, row] - changed[:, row]) < 0.1 * np.std(changed[:, row])
+
+
+def test_legs_are_alike_joint_by_joint(twin: RobotModel) -> None:
+    names = [[twin.joint_names[joint] for joint in joints] for joints in leg_joints(twin)]
+    assert names == [[f"LLEG_JOINT{place}", f"RLEG_JOINT{place}"] for place in range(6)]
+
+
+def test_torques_of_a_foot_turn_the_joints_of_its_own_leg(twin: RobotModel, sweep: MotionLog) -> None:
+    still = sweep.positions(twin)[:1]
+    up = np.zeros((1, 12))
+    up[0, 2] = 300.0
+    (torques,) = leg_torques(twin, still, up)
+    turned = {twin.joint_names[place] for place in np.flatnonzero(np.abs(torques) > 1e-6)}
+    assert turned
+    assert turned < {name for name in LEGS if name.startswith(next(iter(twin.feet))[0].upper())}
