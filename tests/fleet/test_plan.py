@@ -117,7 +117,7 @@ def test_logs_of_a_day_stand_in_times_order_and_the_group_begins_with_the_first(
 
 def test_logs_of_a_store_keep_their_urls_and_each_is_named_once(tmp_path: Path) -> None:
     system = fsspec.filesystem("memory")
-    for name in ("b.csv", "a.csv", "notes.txt"):
+    for name in ("b.csv", "a.csv", "a.truth.parquet"):
         system.pipe_file(f"/plan/{name}", b"time\n")
     (tmp_path / "c.csv").write_text("time\n")
     patterns = ["memory://plan/*", str(tmp_path / "*.csv"), "memory://plan/a.csv"]
