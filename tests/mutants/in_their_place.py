@@ -152,4 +152,11 @@ IN_THEIR_PLACE = (
         "6) for name in wrench",
         ("online/test_estimator.py",),
     ),
+    Mutant(
+        "model_selection/model_fit.py",
+        "fitted numbers leave as many residuals as samples",
+        "max(rows - len(covariance), 1)",
+        "rows",
+        ("model_selection/test_fit_freedom.py",),
+    ),
 )
