@@ -31,6 +31,10 @@ class Stub:
     moves: float = 0.1
     below: float = 10.0
     imu = SimpleNamespace(name="chest")
+    # Of which SHIFTED is 3 mm.
+    robot = SimpleNamespace(
+        feet={"left": SimpleNamespace(sole=SimpleNamespace(polygon=[[0.3, 0.1], [-0.3, -0.1]]))}
+    )
 
     def sides(self) -> StanceSides:
         arms = np.zeros((10, 2, 6, 3))
@@ -233,6 +237,47 @@ def test_feet_that_are_swapped(
     if found and told:
         assert found.fatal
         assert ("; or column 'a' is reversed" in found.text) == said_too
+
+
+@pytest.mark.parametrize(("moving", "told"), [(0.008, True), (0.0085, True), (0.0088, False), (0.05, False)])
+def test_a_load_in_one_hand_is_no_exchange_of_feet(
+    monkeypatch: pytest.MonkeyPatch, moving: float, told: bool
+) -> None:
+    """Exchanged feet undo what is constant of it, and more of the misfit moves: SHIFTED more than as read."""
+    stance = Stub(0.1, exchanged=0.01)
+    other = SimpleNamespace(misfit=0.01, moving=moving)
+    still = Stub.sides
+
+    def sides(self: Stub) -> object:
+        return other if self.misfit == other.misfit else still(self)
+
+    monkeypatch.setattr(Stub, "sides", sides)
+    assert stance.sides().moving == pytest.approx(0.1 * 0.1 * 5 / 9, rel=0.02)
+    found = said(monkeypatch, stance)
+    assert (found is not None and found.code == "swapped_feet") == told
+
+
+def test_feet_that_are_swapped_in_a_small_sway_whatever_else_would_undo_what_is_constant(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(Stub, "exchanged_wrenches", lambda _: Stub(0.011, moves=0.9))
+    assert said(monkeypatch, Stub(0.012, moves=0.9), {"column 'a'": 0.001}) is None  # what moves stays
+    monkeypatch.setattr(Stub, "exchanged_wrenches", lambda _: Stub(0.011, moves=0.1))
+    found = said(monkeypatch, Stub(0.012, moves=0.9), {"column 'a'": 0.001})
+    assert found is not None
+    assert (found.code, "column 'a' is reversed" in found.text) == ("swapped_feet", True)
+
+
+@pytest.mark.parametrize(("misfit", "told"), [(0.0042, False), (0.0045, False), (0.0061, True)])
+def test_what_moves_is_measured_by_the_soles(
+    monkeypatch: pytest.MonkeyPatch, misfit: float, told: bool
+) -> None:
+    """Half of it moves: of a robot half as large half as much counts."""
+    stance = Stub(misfit, exchanged=misfit / 20, moves=0.9)
+    assert (said(monkeypatch, stance) is not None) == told
+    small = SimpleNamespace(polygon=[[0.15, 0.05], [-0.15, -0.05]])
+    monkeypatch.setattr(Stub, "robot", SimpleNamespace(feet={"left": SimpleNamespace(sole=small)}))
+    assert said(monkeypatch, stance) is not None
 
 
 @pytest.mark.parametrize(("misfit", "told"), [(0.049, False), (0.051, True)])

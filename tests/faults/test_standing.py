@@ -152,7 +152,7 @@ def test_moments_of_exchanged_feet_are_no_unit(scale: float, code: str) -> None:
 def test_a_unit_is_told_where_exchanged_feet_do_not_explain_it(
     monkeypatch: pytest.MonkeyPatch, tilt: MotionLog, left: float, unit: bool, code: str
 ) -> None:
-    stance, as_read = Mock(), Mock(misfit=0.3, moving=0.1, lean=0.0)
+    stance, as_read = Mock(robot=hrp2.robot()), Mock(misfit=0.3, moving=0.1, lean=0.0)
     stance.sides.return_value = as_read
     stance.exchanged_wrenches.return_value.sides.return_value = Mock(misfit=left, moving=0.1)
     stance.world_wrenches.return_value.sides.return_value = Mock(misfit=0.3, moving=0.1)
@@ -177,7 +177,7 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     monkeypatch: pytest.MonkeyPatch, tilt: MotionLog, left: float, told: bool
 ) -> None:
     """Of a robot on one foot, whose ankle's roll moves the centre of mass as far as the other foot is."""
-    stance = Mock()
+    stance = Mock(robot=hrp2.robot())
     still = np.zeros((20, 3))
     stance.sides.return_value = Mock(
         misfit=0.3, moving=0.1, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)), up=still, push=still

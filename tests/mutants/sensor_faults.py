@@ -71,8 +71,8 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "sensors/moments/law_rows.py", "a walk is as slow as a sway",
-        "quick if steps else low_pass", "quick if False else low_pass",
-        ("sensors/moments/test_torque_gains.py",),
+        "QUICKER if steps else BAND", "BAND",
+        ("sensors/moments/test_torque_delay.py",),
     ),
     Mutant(
         "sensors/moments/moment_errors.py", "the noise of readings is arms",

@@ -18,7 +18,7 @@ BETTER = 0.5  # share of the misfit that must be left after the change
 FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
-SHIFTED = 0.003  # m: what moves by less may be noise of the forces
+SHIFTED = 0.005  # of a sole's length: what moves by less may be noise of the forces
 # Between the ground's usual force and the IMU's up: more than zeros of sensors make.
 LEANING = np.radians(3.5)
 QUARTERS = (90, 180, -90)  # deg: how a sensor is mounted wrongly, or its axes named
@@ -54,7 +54,13 @@ class StanceChanges:
     def far(self) -> float:
         """What must be left of what moves of the misfit [m] by a change that follows the motion far better. No wrong
         mass or place moves with the load: exchanged feet and turned sensors show in a small sway too."""
-        return FAR_BETTER * self.as_is.moving if self.as_is.moving > SHIFTED else 0.0
+        return FAR_BETTER * self.as_is.moving if self.as_is.moving > self.shifted else 0.0
+
+    @property
+    def shifted(self) -> float:
+        """What moves of a misfit [m] beyond the forces' noise."""
+        soles = (foot.sole.polygon for foot in self.stance.robot.feet.values())
+        return SHIFTED * max(float(np.ptp(polygon, axis=0).max()) for polygon in soles)
 
     @cached_property
     def exchanged_feet(self) -> StanceSides:
@@ -76,7 +82,7 @@ class StanceChanges:
         moving = self.as_is.moving
         # Vertical force cells have no x and y that could be turned.
         flat = all(wrench[:, :2].any() for wrench in self.stance.wrenches)
-        if max(self.misfit, moving) <= SHIFTED or not flat:
+        if max(self.misfit, moving) <= self.shifted or not flat:
             return None
         sensors = [foot.wrench.name for foot in self.stance.robot.feet.values()]
         ways = {f"columns 'wrench.{sensor}.*'": [place] for place, sensor in enumerate(sensors)}

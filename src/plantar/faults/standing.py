@@ -138,11 +138,18 @@ def _in_world_axes(changes: StanceChanges) -> Finding | None:
 
 
 def _exchanged_feet(changes: StanceChanges) -> Finding | None:
-    exchanged, best, alike = changes.exchanged_feet.misfit, changes.best_sign, ALIKE * changes.misfit
-    explains = changes.misfit > NOTABLE and exchanged < BETTER * changes.misfit
-    if not (_feet_follow(changes) or explains) or exchanged >= best + alike:
+    sides, other, alike = changes.as_is, changes.exchanged_feet, ALIKE * changes.misfit
+    notable, best, follow = changes.misfit > NOTABLE, changes.best_sign, _feet_follow(changes)
+    # A load in one hand is undone by feet that are exchanged, but not what moves.
+    explain = (
+        notable and other.misfit < BETTER * sides.misfit and other.moving < sides.moving + changes.shifted
+    )
+    nearest = (
+        other.misfit < best + alike
+    )  # to what exchanged feet leave of a small misfit, any sign comes near
+    if not (follow and (nearest or not notable)) and not (explain and nearest):
         return None
-    return _swapped(f"; or {_alike(changes)} is reversed" if best < exchanged + alike else "")
+    return _swapped(f"; or {_alike(changes)} is reversed" if best < other.misfit + alike else "")
 
 
 def _quarter_turn(changes: StanceChanges) -> Finding | None:

@@ -89,7 +89,10 @@ def test_forces_that_do_not_add_up_to_a_weighed_robot_are_the_sensors_fault(robo
     (of_urdf,), (of_weighed,) = (
         force_gain_notes(each, errors) for each in (robot, replace(robot, weighed=robot.mass))
     )
-    assert "Either the URDF's masses are wrong, or the force sensors' gains, which" in of_urdf.text
+    assert (
+        "Either its masses are wrong, a load or a rope is not in it, or wrong are the force sensors' gains, which"
+        in of_urdf.text
+    )
     assert "add up to the weighed 60.0 kg" in of_weighed.text
     assert "Wrong are the force sensors' gains, which" in of_weighed.text
 

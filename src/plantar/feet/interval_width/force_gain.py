@@ -154,7 +154,10 @@ def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list
         return []
     feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in sure.items())
     zeros = "or their zeros: read the sensors with the feet in the air"
-    whose, gains = "the URDF's", "Either the URDF's masses are wrong, or the force sensors' gains"
+    whose, gains = (
+        "the URDF's",
+        "Either its masses are wrong, a load or a rope is not in it, or wrong are the force sensors' gains",
+    )
     if robot.weighed is not None:
         whose, gains = "the weighed", "Wrong are the force sensors' gains"
     text = (

@@ -42,7 +42,8 @@ class LawRow(NamedTuple):
 def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> Iterator[LawRow]:
     """Row by row: all at once would be the largest array of any log.
 
-    Of a standing robot what is slower than BAND. A walk moves faster, and so strongly that noise is small beside it.
+    Of a standing robot what is slower than BAND; of a walk, which moves faster, than QUICKER, so strongly that noise is
+    small beside it there. Above it coarse encoders' accelerations had passed for torques that read too much.
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
     equation, period = equation_of(robot.floating_model), residual.pair.period
@@ -88,7 +89,7 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
             some = slice(first, first + TOGETHER)
             # Without what postures and drifting zeros do to them.
             quick = without_slow_cosines(np.column_stack(signals[some]), period, SLOW)
-            slow[:, some] = quick if steps else low_pass(quick, period, BAND)
+            slow[:, some] = low_pass(quick, period, QUICKER if steps else BAND)
             if not steps and noisy[some].any():
                 fast = (quick - slow[:, some]) * noisy[some]
                 noise[0][:, some] = low_pass(fast, period, QUICKER)
