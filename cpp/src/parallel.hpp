@@ -13,7 +13,7 @@ namespace plantar {
 // How many threads are worth starting for `count` samples when each should have at least `least`.
 inline unsigned worthwhile_threads(std::size_t count, std::size_t least, unsigned wanted) {
   const std::size_t cores = wanted > 0 ? wanted : std::max(1u, std::thread::hardware_concurrency());
-  return static_cast<unsigned>(std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, cores));
+  return static_cast<unsigned>(std::clamp<std::size_t>(count / least, 1, cores));
 }
 
 // work(thread, begin, end) for equal contiguous parts of [0, count), the boundaries at multiples of `grain`.

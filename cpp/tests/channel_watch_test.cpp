@@ -189,6 +189,9 @@ void a_joint_is_stuck_where_others_go_farther_than_they_ever_did() {
   Pair doubt;
   doubt.go(1.0, 0.02, false).go(1.0, 2.0 * LEAST_WAY, true);
   check::that(doubt.joint.doubtful() && !doubt.stuck, "less is a doubt");
+  Pair short_rest;
+  short_rest.go(1.0, 0.02, false).go(0.8 * FROZEN_TIME, 2.0 * LEAST_WAY / FROZEN_TIME, true);
+  check::that(!short_rest.joint.doubtful(), "a step of its encoder takes so long");
 }
 
 // An encoder whose noise is gone while its twin's goes on.

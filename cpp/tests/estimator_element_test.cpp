@@ -18,7 +18,7 @@ constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 constexpr int FINE = 20;  // steps of the rubber in one sample
 
 // One foot beside another one that carries the rest; the IMU sits on the ankle.
-EstimatorModel model(bool always, double told_std) {
+EstimatorModel model(bool always, double told_std, int axis) {
   EstimatorModel model;
   model.weight = WEIGHT, model.joints = {"free"};
   for (const char* name : {"left", "right"}) {
@@ -27,20 +27,20 @@ EstimatorModel model(bool always, double told_std) {
     foot.bush = foot.sole = foot.sensor = HERE;
     foot.polygon = {{0.1, 0.06}, {-0.1, 0.06}, {-0.1, -0.06}, {0.1, -0.06}};
     foot.place_std = {0.003, 0.003};
-    foot.slip_angle = {SLIP_ANGLE, 0.0}, foot.slip_torque = {SLIP_TORQUE, 0.0}, foot.slip_torque_std = {told_std, 0.0};
-    foot.linear = {false, true};
+    foot.slip_angle[axis] = SLIP_ANGLE, foot.slip_torque[axis] = SLIP_TORQUE, foot.slip_torque_std[axis] = told_std;
+    foot.linear[1 - axis] = true;
     model.feet.push_back(foot);
   }
   return model;
 }
 
-// `angle(t)` and `load(t)` of the left foot, sampled at `rate_hz` for `seconds`; what is known of its pitch at the end.
+// `angle(t)` and `load(t)` of the left foot, sampled at `rate_hz` for `seconds`; what is known of it at the end.
 // missing: from when to when its force sensor says nothing.
 template <class Angle, class Load>
 FootEstimate after(double seconds, double rate_hz, bool always, double first_state, Angle angle, Load load,
                    double told_std = 1e-6, double torque_noise = 0.0, std::array<double, 2> missing = {},
-                   double attitude_noise = 0.0) {
-  FootEstimator estimator(model(always, told_std));
+                   double attitude_noise = 0.0, int axis = 0) {
+  FootEstimator estimator(model(always, told_std, axis));
   std::mt19937 random(0);
   std::normal_distribution<double> normal;
   FootEstimate last;
@@ -56,10 +56,11 @@ FootEstimate after(double seconds, double rate_hz, bool always, double first_sta
     const double torque =
         stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
     const double seen = p + attitude_noise * normal(random);
-    const double attitude[4] = {std::cos(seen / 2), noise, -std::sin(seen / 2), noise};
-    const double gyroscope[3] = {noise, -rate, noise};
+    double attitude[4] = {std::cos(seen / 2), noise, -std::sin(seen / 2), noise}, gyroscope[3] = {noise, -rate, noise};
+    if (axis == 1) std::swap(attitude[1], attitude[2]), std::swap(gyroscope[0], gyroscope[1]);
     std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
                                              {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};
+    if (axis == 1) std::swap(wrench[0][3], wrench[0][4]);
     if (t >= missing[0] && t < missing[1]) wrench[0].fill(std::nan(""));
     last = estimator.step({t, {&position, 1}, {}, attitude, gyroscope, {}, wrench})[0];
   }
@@ -74,6 +75,21 @@ void follows_what_turns_between_samples() {
   const FootEstimate found = after(60.0, 100.0, false, 0.0, quick, all);
   check::near(found.pitch.stiffness.value, STIFFNESS, 2e-4 * STIFFNESS, "stiffness beside an element, 100 Hz");
   check::near(found.pitch.damping.value, DAMPING, 5e-4 * DAMPING, "damping beside an element, 100 Hz");
+}
+
+// Where a robot rolls alone, it is one that pitches, turned by a quarter.
+void roll_is_as_pitch() {
+  const FootEstimate pitch = after(20.0, 100.0, false, 0.0, quick, all);
+  const FootEstimate roll = after(20.0, 100.0, false, 0.0, quick, all, 1e-6, 0.0, {}, 0.0, 1);
+  const auto same = [&](Parameter AxisEstimate::*one, const char* what) {
+    const Parameter &rolls = roll.roll.*one, &pitches = pitch.pitch.*one;
+    check::near(rolls.value, pitches.value, 1e-5 * pitches.value, what);
+    check::near(rolls.std, pitches.std, 1e-2 * pitches.std, what);
+  };
+  same(&AxisEstimate::stiffness, "stiffness beside an element in roll");
+  same(&AxisEstimate::damping, "its damping");
+  same(&AxisEstimate::slip_torque, "its slip torque");
+  check::that(roll.roll.identified && pitch.pitch.identified, "both identified");
 }
 
 // A foot that stands throughout began somewhere on its way, too.
@@ -196,6 +212,7 @@ void run() {
   is_not_moved_by_an_attitudes_noise();
   is_followed_through_the_air();
   follows_what_turns_between_samples();
+  roll_is_as_pitch();
   knows_nothing_of_a_foot_that_always_stands();
   takes_nothing_from_before_it_knew();
   is_known_from_the_first_landing_on();

@@ -18,6 +18,7 @@ from plantar.design.rubber import (
     remembered,
 )
 from plantar.design.soft_feet import Softness
+from plantar.design.soles import outward
 from plantar.twin.presets import SLIP_TORQUE
 from plantar.twin.robots import hrp2
 
@@ -88,6 +89,20 @@ def test_feet_are_beyond_their_limits_where_a_centre_of_pressure_is(sign: float)
         assert (of_feet.used(size * shape) <= 1.0) == free, size
     assert any(inside)
     assert not all(inside)
+
+
+def test_an_edge_is_reached_where_the_torque_over_the_whole_load_is_its_room() -> None:
+    """That of a centre of pressure at the edge, under what stands there and what the motion adds to it."""
+    whole = design_samples.reach()
+    reach, random = copy(whole), np.random.default_rng(3)
+    reach.load = 0.1 * reach.weight * random.standard_normal(whole.load.shape)
+    for place, (normals, room) in enumerate(reach._edges):
+        series, _, high = reach._sole(place)
+        carried = reach.weight + reach.load[:, :, place, None]
+        at_edge = room[:, None] * carried  # [N·m]
+        out = outward(normals, reach._torque()[:, :, place])
+        left = (high[:, None] - series).reshape(out.shape)
+        np.testing.assert_allclose(left, at_edge - out, atol=1e-9)
 
 
 def test_joints_have_their_own_room_to_each_side() -> None:

@@ -156,7 +156,11 @@ def test_controllers_files_hold_the_same_motion(written: Path) -> None:
         ((connection, _, raw),) = list(reader.messages())
         message = store.deserialize_cdr(raw, connection.msgtype)
     assert message.joint_names == joints
-    assert message.points[1234].positions == pytest.approx(q[1234])
+    sent = message.points[1234]
+    assert (sent.time_from_start.sec, sent.time_from_start.nanosec) == (12, 340000000)
+    assert sent.positions == pytest.approx(q[1234])
+    assert sent.velocities == pytest.approx(point["velocities"], abs=1e-6)
+    assert len(sent.accelerations) == len(sent.effort) == 0
 
 
 def test_a_gentle_version_is_a_share_of_the_whole(written: Path) -> None:

@@ -102,7 +102,8 @@ def test_what_is_unexplained_is_what_no_delay_of_fifty_milliseconds_mends(late: 
     ("period", "rows"),  # of the five bands (4000 - 2 · end) / stride, end = 2 / lower edge up to a quarter of all
     [(0.01, [(0.25, 2000, 31), (0.4, 3000, 15), (0.8, 3500, 7), (1.6, 3750, 3), (3.2, 3876, 1)]),
      (0.1, [(0.25, 3734, 3), (0.4, 3900, 1), (0.8, 3950, 1), (1.6, 3976, 1)]),
-     (0.13, [(0.25, 3794, 2), (0.4, 3924, 1), (0.8, 3962, 1)])],
+     (0.13, [(0.25, 3794, 2), (0.4, 3924, 1), (0.8, 3962, 1)]),
+     (1.0, []), (2.0, [])],
 )  # fmt: skip
 def test_bands_are_cut_and_thinned_as_their_edges_say(
     period: float, rows: list[tuple[float, int, int]]

@@ -258,3 +258,17 @@ def test_a_drake_point_damps_by_what_it_carries(push: float, carried: float) -> 
     said = {key: float(next(ankle.iter(f"{DRAKE}{key}")).text or "nan") for key in
             ("point_contact_stiffness", "relaxation_time", "hunt_crossley_dissipation", "mu_static")}  # fmt: skip
     assert list(said.values()) == pytest.approx([9000.0, 0.005, 45.0 / carried, 0.6])
+
+
+def test_in_a_stage_the_points_touch_the_ground_and_the_shapes_no_more(tmp_path: Path) -> None:
+    from pxr import Usd, UsdPhysics
+
+    stage = Usd.Stage.Open(str(written("physx-contact", tmp_path)))
+    for side in ("left", "right"):
+        touches = {
+            name: UsdPhysics.CollisionAPI(
+                stage.GetPrimAtPath(f"/World/biped/{side}_ankle/{name}")
+            ).GetCollisionEnabledAttr().Get()
+            for name in ("foot", "cover")
+        }  # fmt: skip
+        assert touches == {"foot": False, "cover": True}

@@ -8,6 +8,7 @@ dampingR); mc_state_observation etc/MCKineticsObserver/robots (linStiffness, ang
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -86,3 +87,30 @@ def test_kinetics_observer_puts_roll_on_x_and_pitch_on_y(feet: dict[str, Any], t
     assert values["linStiffness"] == [40000, 40000, 40000]
     assert values["linDamping"] == [120, 120, 400]
     assert "export_default" in {note.code for note in notes}
+
+
+@pytest.mark.parametrize(
+    ("entries", "wrong"),
+    [
+        ([("a", 1, 0, -2), ("b", 0, 3, 0)], None),
+        ([("a", 1, 0, 0), ("a", 2, 0, 0)], 2),
+        ([("a", 1, 0, 0), ("", 2, 0, 0)], 2),
+        ([("a", 1, -1, 0)], 1),
+        ([("a", 1, 0, math.inf)], 1),
+        ([("a", math.nan, 0, 0)], 1),
+    ],
+)
+def test_each_flexibility_is_one_joints_with_numbers_that_a_spring_has(
+    entries: list[tuple[str, float, float, float]], wrong: int | None, tmp_path: Path
+) -> None:
+    path = tmp_path / "module.json"
+    listed = [dict(zip(("jointName", "K", "C", "O"), entry, strict=True)) for entry in entries]
+    path.write_text(json.dumps({"flexibilities": listed}))
+    if wrong is None:
+        found = read_flexibilities(path)
+        assert {name: (one.stiffness, one.damping, one.offset) for name, one in found.items()} == {
+            name: (stiffness, damping, offset) for name, stiffness, damping, offset in entries
+        }
+        return
+    with pytest.raises(ExportError, match=f"flexibility {wrong} is no joint with K, C and O"):
+        read_flexibilities(path)

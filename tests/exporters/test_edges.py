@@ -18,6 +18,8 @@ from plantar.exporters import export
 from plantar.exporters.bush import FootBush, check_swing, raised
 from plantar.exporters.shapes import plate, reaches_sole
 from plantar.exporters.spring import Slip, Spring, spring_of
+from plantar.exporters.urdf import geometry
+from plantar.exporters.urdf.geometry import mesh_points
 from plantar.exporters.xml_file import vector
 from plantar.notes import Notes
 
@@ -292,3 +294,18 @@ def test_an_attribute_that_is_not_so_many_numbers_is_refused(text: str) -> None:
             vector(text, size, "mass")
     assert vector(" 3 ", 1, "mass") == [3.0]
     assert vector(None, 3, "axis", 1.0).tolist() == [1.0, 1.0, 1.0]
+
+
+def test_a_mesh_is_read_where_there_is_one_that_is_not_too_large(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "sole.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    found = mesh_points(path, np.array([2.0, 3.0, 1.0]))
+    assert found is not None
+    np.testing.assert_allclose(np.ptp(found, axis=0), [2.0, 3.0, 0.0])
+    for none in (None, tmp_path, tmp_path / "nowhere.obj"):
+        assert mesh_points(none, np.ones(3)) is None
+    for limit, read in ((path.stat().st_size, True), (path.stat().st_size - 1, False)):
+        monkeypatch.setattr(geometry, "MESH_LIMIT", limit)
+        assert (mesh_points(path, np.ones(3)) is not None) == read

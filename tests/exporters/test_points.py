@@ -155,14 +155,15 @@ def test_outer_points_rub_for_the_one_that_slides() -> None:
 def test_what_a_foot_alone_shows_is_checked_over_loads_steps_and_angles(
     foot: PointFoot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """K is 4 % off at each load, C 10 %, 20 % at steps of 2 ms; far out K is 30 % off."""
+    """K is 4 % off, and C 10 %, where they are most; C 20 % at steps of 2 ms; far out K is 30 % off."""
 
     def stands(_: PointFoot, axis: Axis, load: float, step: float, share: float) -> float:
-        return (0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04) * STIFFNESS[axis]
+        return (0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.03) * STIFFNESS[axis]
 
     def shown(foot: PointFoot, axis: Axis, load: float, step: float) -> Measured:
         held = stands(foot, axis, load, step, MARKED)
-        return Measured(held, (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+        most = 0.1 if step < 0.002 else -0.2
+        return Measured(held, (1 + most * min(1.0, load / WEIGHT)) * DAMPING[axis])
 
     monkeypatch.setattr(fit, "standing_stiffness", stands)
     monkeypatch.setattr(fit, "measured", shown)

@@ -80,11 +80,32 @@ def test_overs_leave_the_users_stage_as_it_is(tmp_path: Path) -> None:
     assert not UsdPhysics.CollisionAPI(foot).GetCollisionEnabledAttr().Get()
     assert UsdPhysics.CollisionAPI(cover).GetCollisionEnabledAttr().Get(), "it does not stand on the ground"
     plate = stage.GetPrimAtPath(f"{robot}/left_bush_sole/plate")
+    size, at = plate.GetAttribute("xformOp:scale").Get(), plate.GetAttribute("xformOp:translate").Get()
+    assert (size[2], at[2] - size[2] / 2) == pytest.approx((0.01, -0.03)), "down to the sole"
+    assert [[*corner] for corner in plate.GetAttribute("extent").Get()] == [[-0.5] * 3, [0.5] * 3]
     bound = plate.GetRelationship("material:binding:physics").GetTargets()
     assert [str(path) for path in bound] == ["/World/rubber"]
     masses = [UsdPhysics.MassAPI(stage.GetPrimAtPath(f"{robot}/{name}")).GetMassAttr().Get()
               for name in ("left_ankle", "left_bush_z_link", "left_bush_pitch_link", "left_bush_sole")]  # fmt: skip
     assert sum(masses) == pytest.approx(1.5)
+    sole = UsdPhysics.FilteredPairsAPI(stage.GetPrimAtPath(f"{robot}/left_bush_sole"))
+    apart = [str(path) for path in sole.GetFilteredPairsRel().GetTargets()]
+    assert apart == [f"{robot}/left_ankle"], "a sole stands in its ankle's shapes"
+
+
+@pytest.mark.parametrize(("mass", "left"), [(1.5, 1.35), (0.31, 0.16), (0.29, 0.29), (None, None)])
+def test_what_a_bush_weighs_is_taken_off_an_ankle_that_can_spare_it(
+    mass: float | None, left: float | None, tmp_path: Path
+) -> None:
+    """Half of it at most; a mass that the stage leaves to the engine stays so."""
+    model = write_usd(tmp_path / "stage.usda")
+    before, _, after = model.read_text().partition('"left_ankle"')
+    given = "" if mass is None else f"float physics:mass = {mass}"
+    model.write_text(before + '"left_ankle"' + after.replace("float physics:mass = 1.5", given, 1))
+    export(result(write_urdf(tmp_path / "biped.urdf")), "usd", tmp_path / "out.usda", model=model)
+    stage = stage_of(tmp_path / "out.usda")
+    attribute = pxr.UsdPhysics.MassAPI(stage.GetPrimAtPath("/World/biped/left_ankle")).GetMassAttr()
+    assert (attribute.Get() if attribute.HasAuthoredValue() else None) == (left and pytest.approx(left))
 
 
 def test_joints_and_bodies_meet(tmp_path: Path) -> None:

@@ -141,3 +141,14 @@ def test_a_folder_is_another_where_one_of_its_files_was_written_anew(tmp_path: P
     os.utime(inner / "b", ns=(0, 1_000))
     after = stamp_of(str(tmp_path / "bag"))
     assert (after.size, after != before) == (10, True)
+
+
+def test_a_folder_of_a_store_is_as_large_as_its_files_and_another_with_any_of_them() -> None:
+    system = fsspec.filesystem("memory")
+    system.pipe_file("/logs/bag/a", b"12345")
+    system.pipe_file("/logs/bag/inner/b", b"123")
+    before = stamp_of("memory://logs/bag")
+    assert before.size == 8
+    assert stamp_of("memory://logs/bag") == before
+    system.pipe_file("/logs/bag/inner/b", b"124")
+    assert stamp_of("memory://logs/bag") != before, "written anew"

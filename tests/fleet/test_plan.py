@@ -6,12 +6,13 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
+import fsspec
 import pytest
 
 from command_line import refused, run
 from fleet_samples import make_logs, short_log
 from plantar.fleet.manifest import read_manifest
-from plantar.fleet.plan import PlannedLog, groups_of, sources_of, stamp_in
+from plantar.fleet.plan import PlannedLog, find_logs, groups_of, sources_of, stamp_in
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 
@@ -112,3 +113,12 @@ def test_logs_of_a_day_stand_in_times_order_and_the_group_begins_with_the_first(
     assert [one.place for one in groups[0].logs] == ["/second.csv", "/third.csv", "/first.csv"]
     counted = sources_of([log("x", 1), log("y", 2)])
     assert counted == "times from logs' stamps: 2"
+
+
+def test_logs_of_a_store_keep_their_urls_and_each_is_named_once(tmp_path: Path) -> None:
+    system = fsspec.filesystem("memory")
+    for name in ("b.csv", "a.csv", "a.truth.parquet"):
+        system.pipe_file(f"/plan/{name}", b"time\n")
+    (tmp_path / "c.csv").write_text("time\n")
+    patterns = ["memory://plan/*", str(tmp_path / "*.csv"), "memory://plan/a.csv"]
+    assert find_logs(patterns) == ("memory:///plan/a.csv", "memory:///plan/b.csv", str(tmp_path / "c.csv"))

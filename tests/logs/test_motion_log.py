@@ -61,6 +61,8 @@ def test_lengths_and_time_are_checked() -> None:
     for bad in ([0.0, 0.0, 1.0], [0.0, 2.0, 1.0], [0.0, np.nan, 1.0]):
         with pytest.raises(LogError, match=r"column 'time', t = .* does not increase"):
             MotionLog("tilt", np.array(bad), {})
+    with pytest.raises(LogError, match=r"column 'time', t = 2 s, value 1\.5: does not increase"):
+        MotionLog("tilt", np.array([0.0, 1.0, 2.0, 1.5, 1.0]), {})
     with pytest.raises(LogError, match="fewer than two samples"):
         MotionLog("tilt", np.array([0.0]), {})
 

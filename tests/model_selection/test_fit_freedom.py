@@ -47,3 +47,21 @@ def test_each_offset_has_the_deviation_of_its_own_recording(shared: bool) -> Non
         assert len(set(fit.offset_std.values())) == len(set(fit.offsets.values())) == 1
     else:
         assert fit.offset_std["loud"] > 2.5 * max(fit.offset_std["a"], fit.offset_std["b"])
+
+
+def test_white_residuals_leave_what_least_squares_says() -> None:
+    """The residuals' variance, by the samples less three numbers, times the inverse of the normal equations."""
+    data_set = recorded(
+        np.random.default_rng(4), "short", sway(np.random.default_rng(4), 0.05, 0.5)[1000:1400], RUBBER
+    )
+    fit = fit_model(MODEL, [data_set], shared_offset=True)
+    (prepared,) = prepare_data_sets([data_set], fit.cutoff, drift=False)
+    motion = prepared.motion
+    rows = np.column_stack([motion.deflection, motion.rate, np.ones(len(motion.rate))])[:: prepared.every][
+        prepared.used
+    ]
+    values, squares, *_ = np.linalg.lstsq(rows, prepared.response, rcond=None)
+    np.testing.assert_allclose(fit.values, values[:2], rtol=1e-9)
+    variance = squares[0] / (prepared.every * len(rows) - 3)
+    wanted = np.sqrt(variance * np.diag(np.linalg.inv(rows.T @ rows)))[:2]
+    np.testing.assert_allclose(fit.white_std, wanted, rtol=1e-6)

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from plantar.model_selection import model_fit
+from plantar.model_selection import model_fit, selection
+from plantar.model_selection.cross_validation import Candidate
 from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.grid import Pieces
-from plantar.model_selection.model_fit import fit_again, fit_model
+from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
 from plantar.model_selection.selection import choose_model
+from plantar.model_selection.variable_projection import Problem
 from plantar.models import MODELS, BushMotion
 
 PERIOD = 0.005
@@ -130,6 +132,33 @@ def test_a_memory_that_could_not_help_enough_is_not_searched_for(least_gain: flo
     tried = models[1].candidates([each.motion for each in prepare_data_sets(sets, 5.0, drift=True)])
     assert choice.fit.model.name == "kelvin_voigt"
     assert bool(np.isclose(tried, memory.shape, rtol=1e-12).any()) is not searched
+
+
+@pytest.mark.parametrize(
+    ("least_gain", "share", "searched"),
+    [(0.31, 0.48, True), (0.31, 0.5, False), (0.29, 0.5, True), (0.29, 5.9, True), (0.29, 6.1, False)],
+)
+def test_what_is_searched_is_told_by_what_the_grid_leaves(
+    least_gain: float, share: float, searched: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A gain of three tenths is half of the squares; where less is asked for, six times the best one is hopeless."""
+    models = [MODELS["kelvin_voigt"], MODELS["elastoplastic"]]
+    squares, asked, search = Candidate.squares.fget, {}, selection.refine  # type: ignore[attr-defined]
+    linear: list[float] = []
+
+    def left(candidate: Candidate) -> float:
+        if candidate.model is models[0]:
+            linear.append(squares(candidate))
+        return linear[0] if candidate.model is models[0] else share * linear[0]
+
+    def refine(problem: Problem, *given: Any, refined: bool, **more: Any) -> ModelFit:
+        asked[problem.model.name] = refined
+        return search(problem, *given, refined=False, **more)
+
+    monkeypatch.setattr(Candidate, "squares", property(left))
+    monkeypatch.setattr(selection, "refine", refine)
+    choose_model([shaken(1)], models, least_gain=least_gain, shared_offset=False, before=None)
+    assert asked[models[1].name] == searched
 
 
 def test_a_fit_that_had_come_to_rest_looks_for_no_other_landings(monkeypatch: pytest.MonkeyPatch) -> None:

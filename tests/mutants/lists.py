@@ -19,6 +19,7 @@ from drawn_once_more import DRAWN_ONCE_MORE
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
+from in_their_place import IN_THEIR_PLACE
 from literal_edges import LITERAL_EDGES
 from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
@@ -59,5 +60,6 @@ LISTS = {
     "drawn_at_random": DRAWN_AT_RANDOM,
     "soles_and_freedom": SOLES_AND_FREEDOM,
     "seldom_run": SELDOM_RUN,
+    "in_their_place": IN_THEIR_PLACE,
     "by_hand": BY_HAND,
 }

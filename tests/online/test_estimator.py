@@ -328,6 +328,16 @@ def test_what_cannot_be_used_is_said_in_a_line(robot: RobotModel) -> None:
         estimator.step(0.0, np.zeros(len(robot.joint_names)), {"left": np.zeros(6)})
 
 
+def test_each_wrench_is_that_of_the_foot_it_is_named_by(robot: RobotModel) -> None:
+    still, level = np.zeros(len(robot.joint_names)), [1.0, 0.0, 0.0, 0.0]
+    for order in (list(robot.feet), list(robot.feet)[::-1]):
+        forces = {
+            foot: np.array([0.0, 0.0, 100.0 if foot == "left" else 300.0, 0.0, 0.0, 0.0]) for foot in order
+        }
+        found = FootEstimator(robot).step(0.0, still, forces, attitude=level)
+        assert [found["left"].load, found["right"].load] == pytest.approx([100.0, 300.0])
+
+
 def test_without_any_imu_reading_nothing_is_trusted(robot: RobotModel) -> None:
     estimator = FootEstimator(robot)
     forces = {foot: np.array([0.0, 0.0, 300.0, 0.0, 0.0, 0.0]) for foot in robot.feet}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import math
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from plantar.errors import PlantarError
 from plantar.report import Column, Figure, Section, Table, write_feet_report
 from plantar.report.feet import feet_page
+from plantar.report.page import embed
 from plantar.results.feet import FeetResult
 from report_samples import HOSTILE, MOTIONS, Campaign, write_campaign
 
@@ -236,3 +238,8 @@ def test_cut_residuals_are_one_line(tmp_path: Path) -> None:
 
 def test_the_page_of_a_result_in_memory_is_that_of_its_file(campaign: Campaign, page: Page) -> None:
     assert feet_page(FeetResult.load(campaign.directory)) == page.source
+
+
+def test_data_in_a_page_end_no_block_and_are_json() -> None:
+    told = embed({"a": ['</script>&\xe9"', math.nan, -math.inf, 0.1], "b": None})
+    assert told == r'{"a":["\u003c/script\u003e\u0026\u00e9\"",null,null,0.1],"b":null}'

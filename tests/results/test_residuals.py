@@ -48,3 +48,45 @@ def test_a_folder_without_residuals_and_a_broken_file_are_one_line(tmp_path: Pat
     (tmp_path / "residuals.csv").write_text("motion,foot,time\na,left,0.1\n")
     with pytest.raises(PlantarError, match=r"residuals\.csv, column 'used': is missing"):
         read_residuals(tmp_path)
+
+
+@pytest.mark.parametrize("coded", [False, True])
+def test_rows_in_any_order_give_the_same_tracks(coded: bool) -> None:
+    """Each number of a row tells which row it is; the columns that a table may lack are empty."""
+    import pyarrow as pa
+
+    every = [
+        (motion, role, foot, time, support)
+        for motion, role in (("walk", "validate"), ("sway", "fit"))
+        for foot in ("right", "left")
+        for time, support in enumerate(("double", "single", "air", "single", "transition"))
+    ]
+    number = {row: float(place) for place, row in enumerate(every)}
+    shuffled = [
+        every[0],
+        *(every[1 + place] for place in np.random.default_rng(0).permutation(len(every) - 1)),
+    ]
+    names = ("motion", "role", "foot", "time", "support")
+    columns = {name: pa.array(cells) for name, cells in zip(names, zip(*shuffled, strict=True), strict=True)}
+    columns = {
+        name: cells.dictionary_encode() if coded and name != "time" else cells
+        for name, cells in columns.items()
+    }
+    values = np.array([number[row] for row in shuffled])
+    table = pa.table(
+        columns | {"used": values % 2 == 0, "force_z": values, "roll.offset": -values, "other": values}
+    )
+    tracks = {(track.motion, track.foot): track for track in tracks_of(table)}
+    assert next(iter(tracks)) == ("walk", "right"), "as the file first names them"
+    assert len(tracks) == 4
+    for (motion, foot), track in tracks.items():
+        rows = [row for row in every if (row[0], row[2]) == (motion, foot)]
+        own = np.array([number[row] for row in rows])
+        assert track.role == rows[0][1]
+        assert track.support.tolist() == [row[4] for row in rows]
+        assert (track.time.tolist(), track.used.tolist()) == (list(range(5)), (own % 2 == 0).tolist())
+        assert {name: cells.tolist() for name, cells in track.values.items()} == {
+            "force_z": own.tolist(), "roll.offset": (-own).tolist()
+        }  # fmt: skip
+    for track in tracks_of(table.drop_columns(["role", "support"])):
+        assert (track.role, track.support.tolist()) == ("", [""] * 5)

@@ -21,7 +21,6 @@ class CausalFilter {
  public:
   void design(double cutoff, double period) noexcept {
     passes_all_ = !(cutoff * period < FILTER_REACH);
-    if (passes_all_) return;
     const double k = std::tan(std::numbers::pi * cutoff * period);
     const double damping[2] = {2.0 * std::sin(std::numbers::pi / 8), 2.0 * std::sin(3 * std::numbers::pi / 8)};
     for (int s = 0; s < 2; ++s) {

@@ -57,7 +57,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   follow_elements(row, time, dt);
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
-  if (!stands || !row.stands) return;
+  if (!row.stands) return;
   if (left_out_ || (estimate_.flags & (SLIP | IMPACT | CONTRADICTION))) {
     pause_ = std::abs(delay_) + 1.5 * dt;  // two ticks, and the delay
     return;
@@ -77,7 +77,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
                                y,
                                load * x,
                                load * y,
-                               -std::sin(angles[0]),
+                               std::sin(angles[0]),
                                angles[0],
                                angles[2],
                                angles[6],

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "online/air_zero.hpp"
+#include "online/axis_published.hpp"
 #include "online/axis_regression.hpp"
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
@@ -24,8 +25,6 @@
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
-
-constexpr double STIFFEST = 100.0;  // m, times the weight: stiffness before any data
 
 inline bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
 

@@ -87,11 +87,7 @@ def _mean_squares(period: float, cutoff: float) -> tuple[tuple[float, ...], tupl
 def _unexplained(band: Array, whole: Mask, count: int) -> Array:
     """The first `count` columns of a band less what the other columns and their rates explain, the whole samples."""
     response = band[:, count:]
-    rates = np.empty_like(response)
-    np.subtract(response[2:], response[:-2], out=rates[1:-1])
-    rates[1:-1] *= 0.5
-    rates[[0, -1]] = response[[1, -1]] - response[[0, -2]]
-    joint = np.hstack([band, rates])
+    joint = np.hstack([band, np.gradient(response, axis=0)])
     kept = whole & complete(joint)
     joint = joint if kept.all() else joint[kept]
     values, explaining = joint[:, :count], joint[:, count:]

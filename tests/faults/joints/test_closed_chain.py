@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ import pytest
 from biped import record, sway
 from feet_trials import noisy
 from plantar.errors import DataError
-from plantar.faults.joints.closed_chain import _own_angle, _Stand, check_closed_chain
+from plantar.faults.joints import closed_chain
+from plantar.faults.joints.closed_chain import _exchanged_legs, _own_angle, _Stand, check_closed_chain
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -104,6 +106,16 @@ def test_exchanged_legs_are_refused() -> None:
     (found,) = check_closed_chain(twin, log.with_columns(exchanged))
     assert (found.code, found.fatal) == ("joint_names", True)
     assert "legs look exchanged" in found.text
+
+
+@pytest.mark.parametrize("joints", [{"left": (), "right": ()}, {"left": ("knee",), "right": ()}])
+def test_legs_that_differ_or_have_no_joints_cannot_be_exchanged(
+    joints: dict[str, tuple[str, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(closed_chain, "legs", lambda _: joints)
+    robot = SimpleNamespace(joint_names=("knee",))
+    stand = SimpleNamespace(robot=robot, positions=np.zeros((5, 1)))
+    assert list(_exchanged_legs(stand, np.zeros(5, dtype=np.intp))) == []  # type: ignore[arg-type]
 
 
 def test_a_sole_that_slides_may_be_a_stuck_encoder(robot: RobotModel) -> None:

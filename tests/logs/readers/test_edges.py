@@ -11,12 +11,13 @@ import pytest
 from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import mc_rtc, open_log, text_numbers
+from plantar.logs.readers import mc_rtc, open_log, robot_logger, text_numbers
 from plantar.logs.readers.force_cells import wrench_of_cells
 from plantar.logs.readers.ports import joints_for
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import Stream, increasing, merge, origin, resample
 from plantar.logs.readers.text_numbers import read_numbers
+from plantar.logs.save_mc_rtc import save_mc_rtc
 from plantar.notes import Note
 
 LOG = Path("x")
@@ -245,12 +246,51 @@ def test_mat_files_of_another_kind_say_what_to_write_instead(tmp_path: Path) -> 
         open_log(tmp_path / "own.mat")
 
 
+@pytest.mark.parametrize("shape", [(3, 1, 4), (4, 3), (3, 4), (4, 1, 4), (4, 4)])
+def test_a_signal_has_a_row_for_each_stamp_whichever_way_it_was_written(
+    shape: tuple[int, ...], tmp_path: Path
+) -> None:
+    """Of as many numbers as samples as it comes: MATLAB's order is turned round by HDF5 already."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "log.mat", "w") as file:
+        group = file.create_group("joints")
+        group["timestamps"], group["data"] = (
+            np.arange(4.0)[None],
+            np.arange(np.prod(shape), dtype=float).reshape(shape),
+        )
+        time, values = robot_logger._signal(group, "joints", ReadLimit(tmp_path / "log.mat", 10**6))
+    wanted = np.arange(np.prod(shape), dtype=float).reshape(shape[0], -1)
+    np.testing.assert_array_equal(values, wanted if shape[0] == 4 else wanted.T)
+    np.testing.assert_array_equal(time, np.arange(4.0))
+
+
 @pytest.mark.parametrize("magic", [b"ANNA", b"ANN", b"XNNE", b"ANNZ"])
 def test_an_mc_rtc_log_begins_as_one(magic: bytes, tmp_path: Path) -> None:
     path = tmp_path / "log.bin"
     path.write_bytes(magic)
     with pytest.raises(LogError, match="is not an mc_rtc binary log"):
         mc_rtc.read(path, None, ReadLimit(path, []))
+
+
+@pytest.mark.parametrize(
+    ("rest", "notes"), [(0, []), (3, ["file_cut"]), (11, ["file_cut"]), (40, ["file_cut"])]
+)
+def test_an_mc_rtc_log_that_is_cut_gives_its_whole_entries(
+    rest: int, notes: list[str], tmp_path: Path
+) -> None:
+    """Behind 20 entries of 60 bytes at least, `rest` bytes of one more: within its size, and within its content."""
+    path, time = tmp_path / "log.bin", 0.005 * np.arange(21)
+    save_mc_rtc(path, time[:20], np.zeros((20, 2)), np.tile(np.eye(4), (20, 1, 1)))
+    whole = path.stat().st_size
+    save_mc_rtc(path, time, np.zeros((21, 2)), np.tile(np.eye(4), (21, 1, 1)))
+    path.write_bytes(path.read_bytes()[: whole + rest])
+    told: list[Note] = []
+    entries = mc_rtc._Entries(path, None, ReadLimit(path, 10**9))
+    with path.open("rb") as file:
+        file.seek(4)
+        entries.read(file, told)
+    assert len(entries.columns()["t"]) == 20
+    assert [note.code for note in told] == notes
 
 
 def test_joints_without_names_have_the_urdfs_order_where_their_number_agrees(tmp_path: Path) -> None:

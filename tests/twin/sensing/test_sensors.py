@@ -202,9 +202,9 @@ def test_logs_and_truth_are_written_apart(robot, tmp_path) -> None:
     from plantar.logs.readers import open_log
 
     preset = PRESETS["sensors"]
-    recording = record(tilted(), robot, preset.physics(PAPER), preset, 5)
+    recording = record(replace(tilted(), name="Tilt.3"), robot, preset.physics(PAPER), preset, 5)
     log = open_log(recording.write(tmp_path))
     assert np.array_equal(log.time, recording.log.time)
     assert all(np.array_equal(log.column(name), values) for name, values in recording.log.columns.items())
-    assert (tmp_path / "Tilt3.truth.parquet").exists()
+    assert (tmp_path / "Tilt.3.truth.parquet").exists()
     assert not any("deflection" in name for name in log.columns)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from os import cpu_count
 
 import numpy as np
@@ -137,14 +138,13 @@ def banded(signals: Array, period: float, rated: slice) -> Iterator[tuple[float,
     bands hold nothing else.
     """
     edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
-    above = low_pass(signals, period, edges[0]) if edges else signals
-    for place, edge in enumerate(edges[1:]):
-        below, above = above, low_pass(signals, period, edge)
-        end = round(min(END_CYCLES / edges[place] / period, MOST_ENDS / 2 * len(signals)))
+    passed = pairwise(low_pass(signals, period, edge) for edge in edges)
+    for (lower, edge), (below, above) in zip(pairwise(edges), passed, strict=True):
+        end = round(min(END_CYCLES / lower / period, MOST_ENDS / 2 * len(signals)))
         stride = max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period)))
         kept = slice(end, len(signals) - end, stride)
         rates = differentiate(above[:, rated] - below[:, rated], period)[kept]
-        yield edge - edges[place], above[kept] - below[kept], rates, stride
+        yield edge - lower, above[kept] - below[kept], rates, stride
 
 
 def _parts(size: int, whole: float) -> tuple[slice, slice, slice]:

@@ -142,7 +142,7 @@ def _drift(
     """
     lag = steps_in(LAG, period)
     noise = max(LEAST_NOISE, _usual(seen[lag:] - seen[:-lag]) / np.sqrt(2))
-    far = min(steps_in(SLOPE_TIME, period), max(1, (len(seen) - 1) // 2))
+    far = steps_in(SLOPE_TIME, period)  # less than two of these show no slope that changes
     lost = np.einsum("ni,ni->n", shaking, shaking) / 2 * period**2
     bent = _usual(seen[2 * far :] - 2 * seen[far:-far] + seen[: -2 * far]) ** 2
     bent -= 6 * noise**2 + 2 * far * float(median(lost))

@@ -55,13 +55,6 @@ class Description:
     def joint_names(self) -> tuple[str, ...]:
         return tuple(body.joint for body in self.bodies[1:])
 
-    def index(self, body: str) -> int:
-        """The place of a body in `bodies`; KeyError when there is none of that name."""
-        for place, candidate in enumerate(self.bodies):
-            if candidate.name == body:
-                return place
-        raise KeyError(body)
-
     def placements(self, positions: Array) -> list[tuple[Array, Array]]:
         """Rotation and origin of every body in the root's frame, for joint positions in `joint_names` order."""
         found: list[tuple[Array, Array]] = [(np.eye(3), np.zeros(3))]

@@ -112,7 +112,8 @@ def _symmetric_keys(nominal: Description) -> list[str]:
 def _solve_masses(nominal: Description) -> Array:
     """The smallest change of the nominal masses that meets the published totals (Gauss-Newton)."""
     positions = np.array([half_sitting()[name] for name in nominal.joint_names])
-    ankle = nominal.placements(positions)[nominal.index("RLEG_LINK5")][1]
+    placements = zip(nominal.bodies, nominal.placements(positions), strict=True)
+    ankle = next(origin for body, (_, origin) in placements if body.name == "RLEG_LINK5")
     # the published centre is over the middle of the feet, the description's over the waist
     goal = np.array(
         [
