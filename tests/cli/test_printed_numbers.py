@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -83,6 +84,11 @@ def test_a_diagnosis_has_its_shares_in_percent(tmp_path: Path, capsys: pytest.Ca
         "what makes next to nothing is left out"
     )
     assert "Against delay: measure it." in text
+    advised = replace(result, parameters=(replace(row, advice="measure it"),))
+    assert run("diagnose", advised.save(tmp_path)) == 0
+    text = capsys.readouterr().out
+    assert "Next: measure it." in text
+    assert "Against" not in text, "what a number's verdict says is not said again"
 
 
 def test_a_diagnosis_of_no_parameter_is_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

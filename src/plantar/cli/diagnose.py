@@ -42,7 +42,8 @@ def run(result: options.FeetFile, json: options.Json = False) -> None:
     heads = ("foot", "axis", "parameter", "± % (95 %)", "limited by", "share of the variance")
     screen.print(table("What limits each number", heads, cells, styles))
     print_advice(screen, found.parameters)
-    for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
+    told = {row.advice for row in found.parameters}
+    for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice and row.advice not in told}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
     if allowed := assumption_cells(found.assumptions):
         screen.print(table("\nWhat the robot file may be wrong about", ASSUMPTION_HEADS, allowed))

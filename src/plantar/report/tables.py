@@ -119,7 +119,10 @@ def validation_table(validation: Sequence[ValidationRow], kind: str) -> Table:
         "direct": "Table 2. Direct validation: the motions used for the fit",
         "cross": "Table 3. Cross-validation: motions that the fit has not seen",
     }[kind]
-    remark = "A model that does not beat its own offset has learnt nothing."
+    remark = (
+        "Where the model does not beat its own offset, either it has learnt nothing or the motion hardly bends the "
+        "foot: then the offset's error is small, too."
+    )
     if kind == "cross":
         remark += (
             " The unseen motion's offset comes from its first second, which is left out of the score; where a foot "
@@ -184,7 +187,8 @@ def used_table(phases: Sequence[Phase]) -> Table:
         rows.append((one.motion, one.foot, *lengths, one.reasons or "nothing left out"))
     columns = [*Column.words("motion", "foot"), Column("length", "s"), Column("used", "s"), Column("share")]
     columns += Column.words("left out because")
-    return Table.of("What is used of each log", columns, rows)
+    remark = "The bars of each motion, below, say where and why in full."
+    return Table.of("What is used of each log", columns, rows, remark=remark)
 
 
 def input_table(inputs: Sequence[Input]) -> Table:
