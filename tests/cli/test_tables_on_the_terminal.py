@@ -71,14 +71,14 @@ def test_feet_are_told_with_interval_deviation_and_scores() -> None:
         "verdict",
     ]
     assert rows[:3] == [
-        ["left", "pitch", "stiffness", "434", "N.m/rad", "430.5 to 437.5", "1.5", "0.013", "usable"],
-        ["left", "pitch", "damping", "20", "N.m.s/rad", "12.25 to 28", "4", "0.5", "weak"],
+        ["left", "pitch", "stiffness", "434.00", "N.m/rad", "430.50 to 437.50", "1.50", "0.013", "usable"],
+        ["left", "pitch", "damping", "20.000", "N.m.s/rad", "12.250 to 28.000", "4.00", "0.50", "weak"],
         ["left", "z", "stiffness", "–", "N/m", "–", "–", "–", "unidentifiable"],
     ]
     assert "left pitch damping: weak: wide. Next: sway." in lines
     for title, numbers in (
-        ("Table 2. Direct validation [N·m]", ["sway", "left", "pitch", "0.125", "0.25", "30", "0.5", "5"]),
-        ("Table 3. Cross validation [N·m]", ["squat", "left", "pitch", "0.5", "0.75", "20", "2.5", "2"]),
+        ("Table 2. Direct validation [N·m]", ["sway", "left", "pitch", "0.125", "0.250", "30.00", "0.500", "5.00"]),
+        ("Table 3. Cross validation [N·m]", ["squat", "left", "pitch", "0.500", "0.750", "20.00", "2.50", "2.00"]),
     ):
         heads, rows = under(lines, title)
         assert heads == [
@@ -119,7 +119,7 @@ def test_feet_of_many_logs_fit_a_screen() -> None:
     assert heads[0] == "motions"
     said = "no better than the offset alone: walk_10"
     assert cells[:4] == [
-        ["11", foot, axis, "6", "2", "20", "30", "18.4", said]
+        ["11", foot, axis, "6.00", "2.00", "20.00", "30.0", "18.4", said]
         for foot in ("left", "right")
         for axis in ("pitch", "roll")
     ]
@@ -157,7 +157,7 @@ def test_no_word_is_cut_on_a_terminal_of_eighty_columns() -> None:
         "slip_torque",
         "N.m.s/rad",
         "unidentifiable",
-        "2.3913e+05",
+        "239131",
         "0.0125",
         "pitch",
     ):
@@ -183,12 +183,12 @@ def test_inertias_are_told_beside_the_urdfs() -> None:
     heads, rows = under(lines, "Inertial parameters of b: 12.00 kg")
     assert heads == ["link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]"]
     assert rows == [
-        ["leg", "1 (1.5)", "2 (2.5)", "3 (3.5)", "4 (4.5)"],
-        ["arm", "11 (11.5)", "12 (12.5)", "13 (13.5)", "14 (14.5)"],
+        ["leg", "1.000 (1.500)", "2.000 (2.500)", "3.000 (3.500)", "4.000 (4.500)"],
+        ["arm", "11.00 (11.50)", "12.00 (12.50)", "13.00 (13.50)", "14.00 (14.50)"],
     ]  # fmt: skip
     heads, rows = under(lines, "Cross validation")
     assert heads == ["motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %"]
-    assert rows == [["squat", "force.x", "N", "0.375", "3", "0.25", "1.5", "7.5"]]
+    assert rows == [["squat", "force.x", "N", "0.375", "3.00", "0.250", "1.50", "7.50"]]
 
 
 def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
@@ -217,8 +217,8 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
     heads, rows = under(lines, "What this log identifies, in SI units")
     assert heads == ["foot", "axis", "parameter", "value", "verdict", "reason"]
     assert rows == [
-        ["left", "pitch", "stiffness", "434", "usable", "narrow"],
-        ["left", "pitch", "damping", "20", "weak", "wide"],
+        ["left", "pitch", "stiffness", "434.0", "usable", "narrow"],
+        ["left", "pitch", "damping", "20.00", "weak", "wide"],
     ]
 
 
@@ -231,8 +231,8 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
     heads, rows = under(lines, "At the end of the log")
     assert heads == ["foot", "axis", "parameter", "value", "95 %", "unit", "verdict"]
     assert rows[:2] == [
-        ["left", "pitch", "stiffness", "434", "± 3.5", "N.m/rad", "usable"],
-        ["left", "pitch", "damping", "20", "± 7.9", "N.m.s/rad", "weak"],
+        ["left", "pitch", "stiffness", "434.0", "± 3.5", "N.m/rad", "usable"],
+        ["left", "pitch", "damping", "20.00", "± 7.9", "N.m.s/rad", "weak"],
     ]
     assert [line for line in lines if "wide" in line] == ["left pitch damping: weak: wide. Next: sway."]
     assert any("what each flag means" in line for line in lines)
@@ -243,7 +243,7 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
 
 def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
     score = KindScore("squat", "joints", 0.0015, 0.002, 3.25, 12.0, fell=None)
-    assert _cells(score) == ("squat", "joints", "1.5", "2", "3.25")
+    assert _cells(score) == ("squat", "joints", "1.50", "2.00", "3.25")
     assert score.chest == pytest.approx(0.0025)
     assert _cells(KindScore("squat", "rigid", None, None, None, 0.0, 1.5))[2:] == ("falls",) * 3
 

@@ -18,7 +18,6 @@ from plantar.cli.console.terminal import (
     VERDICT_STYLE,
     console,
     end_progress,
-    number,
     print_json,
     progress,
     table,
@@ -28,6 +27,7 @@ from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
 from plantar.notes import Note
 from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 

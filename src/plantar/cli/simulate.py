@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 from typer import Argument, Option
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.terminal import console, end_progress, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.files import refuse_file
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 if TYPE_CHECKING:

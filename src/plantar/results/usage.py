@@ -14,7 +14,7 @@ LEAST = 0.05  # s: of less nobody needs a reason
 
 @dataclass(frozen=True)
 class UsedShare:
-    """Seconds of one foot in one motion, those of them that were used, and those left out by the kinds of their reasons:
+    """Seconds of one foot in one motion, those of them that were used, and those left out by the kind of their reason:
     what stands before the colon in `in the air: no load on this foot`."""
 
     motion: str

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.cli.console.terminal import VERDICT_STYLE, print_notes, table
 from plantar.results.dynamics import DynamicsResult
+from plantar.results.numbers import number
 
 LINK_COLUMNS = ("m", "mx", "my", "mz")
 
