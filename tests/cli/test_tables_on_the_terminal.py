@@ -11,7 +11,7 @@ from rich.console import Console
 
 from plantar.cli.compare import _cells
 from plantar.cli.fleet import run as fleet_run
-from plantar.cli.fleet.report import print_alarms
+from plantar.cli.fleet.report import print_summary
 from plantar.cli.fleet.run import _reporter
 from plantar.cli.identify.dynamics_tables import print_inertia
 from plantar.cli.identify.feet_tables import print_feet
@@ -20,6 +20,7 @@ from plantar.cli.online import _print as print_replay
 from plantar.comparison.compare import KindScore
 from plantar.contact.phases import Phase
 from plantar.fleet.run import Progress
+from plantar.fleet.summary import Reason
 from plantar.inspection.log_summary import ColumnRange, FootSummary, LogSummary
 from plantar.notes import Finding, Note
 from plantar.online.estimates import FIELDS, Contact
@@ -77,8 +78,14 @@ def test_feet_are_told_with_interval_deviation_and_scores() -> None:
     ]
     assert "left pitch damping: weak: wide. Next: sway." in lines
     for title, numbers in (
-        ("Table 2. Direct validation [N·m]", ["sway", "left", "pitch", "0.125", "0.250", "30.00", "0.500", "5.00"]),
-        ("Table 3. Cross validation [N·m]", ["squat", "left", "pitch", "0.500", "0.750", "20.00", "2.50", "2.00"]),
+        (
+            "Table 2. Direct validation [N·m]",
+            ["sway", "left", "pitch", "0.125", "0.250", "30.00", "0.500", "5.00"],
+        ),
+        (
+            "Table 3. Cross validation [N·m]",
+            ["squat", "left", "pitch", "0.500", "0.750", "20.00", "2.50", "2.00"],
+        ),
     ):
         heads, rows = under(lines, title)
         assert heads == [
@@ -182,10 +189,11 @@ def test_inertias_are_told_beside_the_urdfs() -> None:
     lines = shown(print_inertia, result)
     heads, rows = under(lines, "Inertial parameters of b: 12.00 kg")
     assert heads == ["link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]"]
-    assert rows == [
+    assert rows[:2] == [
         ["leg", "1.000 (1.500)", "2.000 (2.500)", "3.000 (3.500)", "4.000 (4.500)"],
         ["arm", "11.00 (11.50)", "12.00 (12.50)", "13.00 (13.50)", "14.00 (14.50)"],
     ]  # fmt: skip
+    assert rows[2][0].endswith("the numbers of one link alone may be far off.")
     heads, rows = under(lines, "Cross validation")
     assert heads == ["motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %"]
     assert rows == [["squat", "force.x", "N", "0.375", "3.00", "0.250", "1.50", "7.50"]]
@@ -197,7 +205,10 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
     )
     sampling = Sampling(100.0, 0.0005, tuple((float(at), at + 0.25) for at in range(1, 8)))
     columns = tuple(ColumnRange(f"c{place}", 0.0, 1.0, place) for place in range(8))
-    findings = (Finding("air_reading", "reads 3 N in the air"), Finding("gap", "a hole", fatal=True))
+    findings = (
+        Finding("air_reading", "reads 3 N in the air"),
+        *(Finding("gap", f"a hole, {place}", fatal=True) for place in range(5)),
+    )
     log = LogSummary(
         "sway", 20.0, 2001, sampling, columns, 60.0, 59.5, (foot,), (K, C), findings, (), assumptions=()
     )
@@ -212,8 +223,14 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
         f"  gap from {at}.000 to {at}.250 s" for at in range(1, 6)
     ], "the first five, all are counted above"
     assert sum("samples without a value" in line for line in lines) == 5
-    assert any("in which the zeros named below are still inside" in line for line in lines)
-    assert any("problem: a hole" in line for line in lines)
+    assert any("zeros of the force sensors included" in line for line in lines)
+    assert [
+        line.strip() for line in lines if "a hole" in line or "reads" in line or "like these" in line
+    ] == [
+        *(f"problem: a hole, {place}" for place in range(3)),
+        "and 2 more like these; --json has all",
+        "warning: reads 3 N in the air",
+    ]
     heads, rows = under(lines, "What this log identifies, in SI units")
     assert heads == ["foot", "axis", "parameter", "value", "verdict", "reason"]
     assert rows == [
@@ -250,8 +267,10 @@ def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
 
 def test_alarms_fill_a_screen_and_the_rest_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
     alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(19)]
-    print_alarms(SimpleNamespace(alarms=alarms))  # type: ignore[arg-type]
-    lines = capsys.readouterr().out.splitlines()
+    failures = (Reason("does not exist", 3, "a.csv: does not exist"),)
+    print_summary(SimpleNamespace(alarms=alarms, failures=failures))  # type: ignore[arg-type]
+    *lines, failed = capsys.readouterr().out.splitlines()
+    assert failed == "failed, 3 like this: a.csv: does not exist"
     assert lines[:2] == ["step: alarm 0", "step: alarm 1"]
     assert lines[-1] == "and 3 more alarms: see fleet.html"
     assert len(lines) == 17

@@ -134,8 +134,8 @@ DRAWN_BLINDLY = (
     ),
     Mutant(
         "cli/fleet/report.py", "quiet prints",
-        "    elif not quiet:\n        print_alarms",
-        "    else:\n        print_alarms",
+        "    elif not quiet:\n        print_summary",
+        "    else:\n        print_summary",
         ("cli/test_fleet_numbers.py",),
     ),
     Mutant(

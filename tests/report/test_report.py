@@ -44,7 +44,7 @@ class Page(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         if self._open and self._open[-1] in self.texts:
-            self.texts[self._open[-1]][-1] += data
+            self.texts["caption" if "caption" in self._open else self._open[-1]][-1] += data
         if not self._open or self._open[-1] not in ("script", "style"):
             self.plain += data
 

@@ -131,8 +131,8 @@ def run(
         (one.name, number(one.log.duration), f"{len(one.log)}", f"{out / one.name}.parquet")
         for one in recordings
     ]
-    title = f"{chosen}, seed {seed}; robot file {robot_file}"
-    console().print(table(title, ("motion", "s", "samples", "log"), rows))
+    console().print(table(f"{chosen}, seed {seed}", ("motion", "s", "samples", "log"), rows))
+    print(robot_file)
 
 
 def _fleet(out: Path, robots: int, days: int, preset: str | None, seed: int, quiet: bool) -> None:

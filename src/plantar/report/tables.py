@@ -205,12 +205,19 @@ def settings_table(settings: Mapping[str, Any]) -> Table:
     return Table.of("Settings", Column.words("setting", "value"), rows)
 
 
+def _text(value: object) -> str:
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(_text, value))
+    if isinstance(value, float):
+        return number(value)
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
 def _flat(settings: Mapping[str, Any], prefix: str, depth: int = 0) -> list[tuple[str, str]]:
     lines: list[tuple[str, str]] = []
     for key, value in settings.items():
         if isinstance(value, Mapping) and value and depth < 4:
             lines += _flat(value, f"{prefix}{key}.", depth + 1)
         else:
-            text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-            lines.append((f"{prefix}{key}", number(value) if isinstance(value, float) else text))
+            lines.append((f"{prefix}{key}", _text(value)))
     return lines
