@@ -31,7 +31,7 @@ def initial_states_of(
     the sensors' offset.
     """
     tried = np.repeat(TRIED[:, None], len(motion.runs), axis=1)
-    extra = model.basis_columns([motion], np.repeat(shape[None, :], len(TRIED), axis=0), [tried])[0]
+    extra = model.basis_columns(motion, np.repeat(shape[None, :], len(TRIED), axis=0), tried)
     own = len(BESIDE)
     memory = low_pass(np.einsum("neb,e->nb", extra, values[own:]), motion.period, cutoff)
     every = memory.T + np.column_stack([motion.deflection, motion.rate]) @ values[:own]
