@@ -90,7 +90,8 @@ GUARDS = (
         "and np.all(after < HARMLESS * before)", "",
     ),
     Mutant(
-        "contact/balance.py", "a mass compared with a force", "LOADED * robot.mass * GRAVITY", "LOADED * robot.mass",
+        "contact/balance.py", "a mass compared with a force", "LIFTING_SHARE * robot.mass * GRAVITY",
+        "LIFTING_SHARE * robot.mass",
     ),
     Mutant(
         "signals/attitude.py", "blended at twice the frequency", "BLEND_FREQUENCY = 0.03", "BLEND_FREQUENCY = 0.06",

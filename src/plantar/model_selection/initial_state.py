@@ -10,7 +10,7 @@ from plantar.conventions import Array, Mask
 from plantar.models import BESIDE, BushModel, BushMotion
 from plantar.signals.filters import low_pass
 
-TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory
+TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory where a run begins
 # Of the span between the torques of the extreme initial states: below it the state has faded.
 FORGOTTEN = 0.02
 
