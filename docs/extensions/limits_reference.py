@@ -105,7 +105,7 @@ def _assigned(node: ast.stmt) -> tuple[list[str], ast.expr | None]:
 def _is_number(value: ast.expr) -> bool:
     """A number, or one that is worked out of numbers and other limits; a tuple of them."""
     nodes = list(ast.walk(value))
-    if any(isinstance(node, ast.Constant) and not isinstance(node.value, int | float) for node in nodes):
+    if any(isinstance(node, ast.Constant) and type(node.value) not in (int, float) for node in nodes):
         return False
     allowed = (
         ast.Constant, ast.UnaryOp, ast.BinOp, ast.operator, ast.unaryop, ast.Tuple, ast.Name, ast.Attribute,

@@ -27,6 +27,7 @@ GRAVITY: Final = 9.80665  # m/s², standard gravity
 NORMAL95: Final = 1.96  # deviations that a 95 % interval of a normal value reaches
 UNIFORM: Final = 3**-0.5  # of its bounds: the deviation of what lies anywhere within (GUM, type B)
 SHOWN: Final = 3.0  # standard deviations from which what logs show is put right, or said
+ROUNDING: Final = 1e-12  # of a value, or of its square: what arithmetic leaves of it
 SURE: Final = 5.0  # standard deviations from which what logs show is beyond doubt
 ROTATIONAL_AXES: Final[tuple[Axis, Axis]] = ("pitch", "roll")
 AXES: Final[tuple[Axis, Axis, Axis]] = ("pitch", "roll", "z")

@@ -64,9 +64,9 @@ def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
     assert next(line.split() for line in lines if line.startswith("squat")) == [
         "squat",
         "joints",
-        "3",
-        "4",
-        "2.5",
+        "3.00",
+        "4.00",
+        "2.50",
     ]
 
 
@@ -82,8 +82,8 @@ def test_compare_says_from_when_on_a_sole_tips_and_what_held_before(
     made_up(monkeypatch, comparison, compare=(rows, []))
     compare.run(Path("result.json"), Path("robot.yaml"), [Path("a.csv")], quiet=False)
     printed = capsys.readouterr().out
-    assert "chest, all motions: joints 5 mrad" in printed
-    assert "chest, until a sole tips: joints 1 mrad" in printed
+    assert "chest, all motions: joints 5.00 mrad" in printed
+    assert "chest, until a sole tips: joints 1.00 mrad" in printed
     assert "sway: from 7.2 s on a sole of the record stands on its edge" in printed
     assert "squat: from" not in printed
 
@@ -121,10 +121,10 @@ def test_design_prints_widths_and_rehearsals_in_their_units(
     design.run(Path("robot.yaml"), tmp_path / "motion.csv", stiffness=500.0, quiet=True)
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["foot", "axis", "parameter", "predicted", "x0.5", "x2"] in lines
-    assert ["left", "pitch", "stiffness", "1.25", "2.5", "–"] in lines
+    assert ["left", "pitch", "stiffness", "1.25", "2.50", "–"] in lines
     heads = "stiffness margin on the soles [mm] least load [%] friction torque [% of limit] bend [rad]"
     assert heads.split() in lines
-    assert ["x0.5", "7.5", "45", "0.12", "66", "0.034"] in lines
+    assert ["x0.5", "7.50", "45.0", "0.12", "66.0", "0.034"] in lines
     assert ["note", "(warning):", "roll", "is", "not", "found"] in lines
 
 

@@ -41,7 +41,7 @@ def test_a_report_says_its_alarms_and_page_but_when_it_is_to_be_quiet(
 ) -> None:
     summary, rates = SimpleNamespace(to_dict=lambda: {"robots": 3}), list[float]()
     monkeypatch.setattr(report, "write_report", lambda _, rate: rates.append(rate) or summary)
-    monkeypatch.setattr(report, "print_alarms", lambda _: print("alarms"))
+    monkeypatch.setattr(report, "print_summary", lambda _: print("alarms"))
     report.run(str(tmp_path), false_alarms=0.5, **asked)
     text = capsys.readouterr().out
     assert rates == [0.5]

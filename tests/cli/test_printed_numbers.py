@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -48,7 +49,7 @@ def test_a_log_is_summed_up() -> None:
     assert "  gap from 1.000 to 1.500 s" in text
     assert "  joint.a.position: 7 samples without a value" in text
     assert "  the feet carry 60.00 kg on average; the URDF weighs 59.50 kg" in text
-    assert [*map(str.split, text.splitlines())][-1] == ["joint.a.position", "-0.5", "1.25", "7"]
+    assert [*map(str.split, text.splitlines())][-1] == ["joint.a.position", "−0.5000", "1.250", "7"]
 
 
 def test_a_foots_angles_are_in_degrees() -> None:
@@ -79,10 +80,15 @@ def test_a_diagnosis_has_its_shares_in_percent(tmp_path: Path, capsys: pytest.Ca
     assert run("diagnose", result.save(tmp_path)) == 0
     text = capsys.readouterr().out
     assert "left  pitch  damping" in text
-    assert " 2  delay       delay 74 %, noise 25 %, place 1 %\n" in text, (
+    assert " 2.0  delay       delay 74 %, noise 25 %, place 1 %\n" in text, (
         "what makes next to nothing is left out"
     )
     assert "Against delay: measure it." in text
+    advised = replace(result, parameters=(replace(row, advice="measure it"),))
+    assert run("diagnose", advised.save(tmp_path)) == 0
+    text = capsys.readouterr().out
+    assert "Next: measure it." in text
+    assert "Against" not in text, "what a number's verdict says is not said again"
 
 
 def test_a_diagnosis_of_no_parameter_is_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -107,16 +113,16 @@ def test_scores_stand_under_their_heads() -> None:
     row = ValidationRow("cross", "squat", "left", "pitch", 0.25, 0.5, 20.0, 1.25, 4.0, 100)
     lost = ValidationRow("cross", "still", "left", "roll", 2.0, 3.0, 5.0, None, 2.0, 100)
     lines = printed(validation_table("Table 3.", [row, lost]))
-    assert ["squat", "left", "pitch", "0.25", "0.5", "20", "1.25", "4"] in lines
+    assert ["squat", "left", "pitch", "0.250", "0.500", "20.00", "1.25", "4.00"] in lines
     assert [
         "still",
         "left",
         "roll",
-        "2",
-        "3",
-        "5",
+        "2.00",
+        "3.00",
+        "5.000",
         "–",
-        "2",
+        "2.00",
         *["no", "better", "than", "the", "offset", "alone"],
     ] in lines
 
@@ -131,8 +137,8 @@ def test_a_joints_terms_and_scores_stand_under_their_heads() -> None:
     result = SimpleNamespace(robot="arm", parameters=(term,), validation=(score,), notes=())
     print_joints(Console(file=out, width=200), result)  # type: ignore[arg-type]
     lines = [line.split() for line in out.getvalue().splitlines()]
-    assert ["knee", "viscous", "3", "N.m.s/rad", "2.8", "to", "3.2", "usable", "narrow"] in lines
-    assert ["squat", "knee", "N.m", "0.4", "2", "0.3", "5", "7.5"] in lines
+    assert ["knee", "viscous", "3.000", "N.m.s/rad", "2.800", "to", "3.200", "usable", "narrow"] in lines
+    assert ["squat", "knee", "N.m", "0.400", "2.00", "0.300", "5.00", "7.50"] in lines
 
 
 def test_what_logs_promise_stands_under_foot_axis_and_symbol() -> None:
@@ -142,5 +148,5 @@ def test_what_logs_promise_stands_under_foot_axis_and_symbol() -> None:
     lines = printed(_table("Sets", [choice]))
     heads = "logs SD pitch K SD pitch C SD roll K SD roll C mean condition"
     assert heads in [" ".join(line) for line in lines]
-    assert lines[-1][:7] == ["a", "+", "b", "1.5", "3", "–", "12"]
-    assert lines[-1][-1] == "42"
+    assert lines[-1][:7] == ["a", "+", "b", "1.50", "3.00", "–", "12.0"]
+    assert lines[-1][-1] == "42.0"

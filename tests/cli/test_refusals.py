@@ -90,7 +90,7 @@ def test_bad_robot_files_and_places(
     twice = ["identify", "feet", campaign / "robot.yaml", log, log, "--out", tmp_path / "out"]
     assert "first.csv is given twice" in refused(capsys, *twice)
     assert "given twice" in refused(capsys, *twice[:4], "--validate", log, *twice[-2:])
-    assert "not such a result" in refused(
+    assert "another kind of result" in refused(
         capsys, "validate", write_json(tmp_path, {"schema": "x"}), campaign / "robot.yaml", log
     )
 

@@ -150,9 +150,21 @@ def test_inspect_says_once_what_is_wrong_and_what_the_weight_holds(
     assert run("inspect", campaign / "robot.yaml", file) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert said.count("hangs in the air, so its zero is off") == 1
-    assert "kg on average, in which the zeros named below are still inside" in said
+    assert "kg on average as recorded, zeros of the force sensors included" in said
     assert run("inspect", campaign / "robot.yaml", campaign / "first.csv") == 0
-    assert "kg on average; the URDF weighs" in " ".join(capsys.readouterr().out.split())
+    told = " ".join(capsys.readouterr().out.split())
+    assert "kg on average; the URDF weighs" in told
+    assert "names no feet" not in told
+
+
+def test_inspect_of_a_robot_without_feet_says_what_goes_on(
+    campaign: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    urdf = next(campaign.glob("*.urdf"))
+    bolted = campaign / "bolted.yaml"
+    bolted.write_text(f"name: bolted\nurdf: {urdf.name}\nbase: fixed\n")
+    assert run("inspect", bolted, campaign / "first.csv") == 0
+    assert "bolted.yaml names no feet: `plantar identify joints`" in capsys.readouterr().out
 
 
 def test_plain_numbers_of_a_csv_are_read_without_arrow_and_robots_without_pydantic(tmp_path: Path) -> None:

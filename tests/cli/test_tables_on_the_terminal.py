@@ -11,7 +11,7 @@ from rich.console import Console
 
 from plantar.cli.compare import _cells
 from plantar.cli.fleet import run as fleet_run
-from plantar.cli.fleet.report import print_alarms
+from plantar.cli.fleet.report import print_summary
 from plantar.cli.fleet.run import _reporter
 from plantar.cli.identify.dynamics_tables import print_inertia
 from plantar.cli.identify.feet_tables import print_feet
@@ -20,6 +20,7 @@ from plantar.cli.online import _print as print_replay
 from plantar.comparison.compare import KindScore
 from plantar.contact.phases import Phase
 from plantar.fleet.run import Progress
+from plantar.fleet.summary import Reason
 from plantar.inspection.log_summary import ColumnRange, FootSummary, LogSummary
 from plantar.notes import Finding, Note
 from plantar.online.estimates import FIELDS, Contact
@@ -71,14 +72,20 @@ def test_feet_are_told_with_interval_deviation_and_scores() -> None:
         "verdict",
     ]
     assert rows[:3] == [
-        ["left", "pitch", "stiffness", "434", "N.m/rad", "430.5 to 437.5", "1.5", "0.013", "usable"],
-        ["left", "pitch", "damping", "20", "N.m.s/rad", "12.25 to 28", "4", "0.5", "weak"],
+        ["left", "pitch", "stiffness", "434.00", "N.m/rad", "430.50 to 437.50", "1.50", "0.013", "usable"],
+        ["left", "pitch", "damping", "20.000", "N.m.s/rad", "12.250 to 28.000", "4.00", "0.50", "weak"],
         ["left", "z", "stiffness", "–", "N/m", "–", "–", "–", "unidentifiable"],
     ]
     assert "left pitch damping: weak: wide. Next: sway." in lines
     for title, numbers in (
-        ("Table 2. Direct validation [N·m]", ["sway", "left", "pitch", "0.125", "0.25", "30", "0.5", "5"]),
-        ("Table 3. Cross validation [N·m]", ["squat", "left", "pitch", "0.5", "0.75", "20", "2.5", "2"]),
+        (
+            "Table 2. Direct validation [N·m]",
+            ["sway", "left", "pitch", "0.125", "0.250", "30.00", "0.500", "5.00"],
+        ),
+        (
+            "Table 3. Cross validation [N·m]",
+            ["squat", "left", "pitch", "0.500", "0.750", "20.00", "2.50", "2.00"],
+        ),
     ):
         heads, rows = under(lines, title)
         assert heads == [
@@ -119,7 +126,7 @@ def test_feet_of_many_logs_fit_a_screen() -> None:
     assert heads[0] == "motions"
     said = "no better than the offset alone: walk_10"
     assert cells[:4] == [
-        ["11", foot, axis, "6", "2", "20", "30", "18.4", said]
+        ["11", foot, axis, "6.00", "2.00", "20.00", "30.0", "18.4", said]
         for foot in ("left", "right")
         for axis in ("pitch", "roll")
     ]
@@ -157,7 +164,7 @@ def test_no_word_is_cut_on_a_terminal_of_eighty_columns() -> None:
         "slip_torque",
         "N.m.s/rad",
         "unidentifiable",
-        "2.3913e+05",
+        "239131",
         "0.0125",
         "pitch",
     ):
@@ -182,13 +189,14 @@ def test_inertias_are_told_beside_the_urdfs() -> None:
     lines = shown(print_inertia, result)
     heads, rows = under(lines, "Inertial parameters of b: 12.00 kg")
     assert heads == ["link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]"]
-    assert rows == [
-        ["leg", "1 (1.5)", "2 (2.5)", "3 (3.5)", "4 (4.5)"],
-        ["arm", "11 (11.5)", "12 (12.5)", "13 (13.5)", "14 (14.5)"],
+    assert rows[:2] == [
+        ["leg", "1.000 (1.500)", "2.000 (2.500)", "3.000 (3.500)", "4.000 (4.500)"],
+        ["arm", "11.00 (11.50)", "12.00 (12.50)", "13.00 (13.50)", "14.00 (14.50)"],
     ]  # fmt: skip
+    assert rows[2][0].endswith("the numbers of one link alone may be far off.")
     heads, rows = under(lines, "Cross validation")
     assert heads == ["motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %"]
-    assert rows == [["squat", "force.x", "N", "0.375", "3", "0.25", "1.5", "7.5"]]
+    assert rows == [["squat", "force.x", "N", "0.375", "3.00", "0.250", "1.50", "7.50"]]
 
 
 def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
@@ -197,7 +205,10 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
     )
     sampling = Sampling(100.0, 0.0005, tuple((float(at), at + 0.25) for at in range(1, 8)))
     columns = tuple(ColumnRange(f"c{place}", 0.0, 1.0, place) for place in range(8))
-    findings = (Finding("air_reading", "reads 3 N in the air"), Finding("gap", "a hole", fatal=True))
+    findings = (
+        Finding("air_reading", "reads 3 N in the air"),
+        *(Finding("gap", f"a hole, {place}", fatal=True) for place in range(5)),
+    )
     log = LogSummary(
         "sway", 20.0, 2001, sampling, columns, 60.0, 59.5, (foot,), (K, C), findings, (), assumptions=()
     )
@@ -212,13 +223,19 @@ def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
         f"  gap from {at}.000 to {at}.250 s" for at in range(1, 6)
     ], "the first five, all are counted above"
     assert sum("samples without a value" in line for line in lines) == 5
-    assert any("in which the zeros named below are still inside" in line for line in lines)
-    assert any("problem: a hole" in line for line in lines)
+    assert any("zeros of the force sensors included" in line for line in lines)
+    assert [
+        line.strip() for line in lines if "a hole" in line or "reads" in line or "like these" in line
+    ] == [
+        *(f"problem: a hole, {place}" for place in range(3)),
+        "and 2 more like these; --json has all",
+        "warning: reads 3 N in the air",
+    ]
     heads, rows = under(lines, "What this log identifies, in SI units")
     assert heads == ["foot", "axis", "parameter", "value", "verdict", "reason"]
     assert rows == [
-        ["left", "pitch", "stiffness", "434", "usable", "narrow"],
-        ["left", "pitch", "damping", "20", "weak", "wide"],
+        ["left", "pitch", "stiffness", "434.0", "usable", "narrow"],
+        ["left", "pitch", "damping", "20.00", "weak", "wide"],
     ]
 
 
@@ -231,8 +248,8 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
     heads, rows = under(lines, "At the end of the log")
     assert heads == ["foot", "axis", "parameter", "value", "95 %", "unit", "verdict"]
     assert rows[:2] == [
-        ["left", "pitch", "stiffness", "434", "± 3.5", "N.m/rad", "usable"],
-        ["left", "pitch", "damping", "20", "± 7.9", "N.m.s/rad", "weak"],
+        ["left", "pitch", "stiffness", "434.0", "± 3.5", "N.m/rad", "usable"],
+        ["left", "pitch", "damping", "20.00", "± 7.9", "N.m.s/rad", "weak"],
     ]
     assert [line for line in lines if "wide" in line] == ["left pitch damping: weak: wide. Next: sway."]
     assert any("what each flag means" in line for line in lines)
@@ -243,15 +260,17 @@ def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.Ca
 
 def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
     score = KindScore("squat", "joints", 0.0015, 0.002, 3.25, 12.0, fell=None)
-    assert _cells(score) == ("squat", "joints", "1.5", "2", "3.25")
+    assert _cells(score) == ("squat", "joints", "1.50", "2.00", "3.25")
     assert score.chest == pytest.approx(0.0025)
     assert _cells(KindScore("squat", "rigid", None, None, None, 0.0, 1.5))[2:] == ("falls",) * 3
 
 
 def test_alarms_fill_a_screen_and_the_rest_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
     alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(19)]
-    print_alarms(SimpleNamespace(alarms=alarms))  # type: ignore[arg-type]
-    lines = capsys.readouterr().out.splitlines()
+    failures = (Reason("does not exist", 3, "a.csv: does not exist"),)
+    print_summary(SimpleNamespace(alarms=alarms, failures=failures))  # type: ignore[arg-type]
+    *lines, failed = capsys.readouterr().out.splitlines()
+    assert failed == "failed, 3 like this: a.csv: does not exist"
     assert lines[:2] == ["step: alarm 0", "step: alarm 1"]
     assert lines[-1] == "and 3 more alarms: see fleet.html"
     assert len(lines) == 17

@@ -30,6 +30,14 @@ def test_an_x_axis_that_points_to_the_other_foot_is_told(tmp_path: Path, degrees
     assert all("feet.left.bush.rpy" in one.text for one in found[:1])
 
 
+@pytest.mark.parametrize("names", [{}, {"left": "right", "right": "left"}])
+def test_a_foot_that_is_named_after_the_other_side_is_told(tmp_path: Path, names: dict[str, str]) -> None:
+    feet = robot_entry()["feet"]
+    assert isinstance(feet, dict)
+    robot = make_robot(tmp_path, feet={names.get(name, name): foot for name, foot in feet.items()})
+    assert [one.code for one in check_bush_axes(robot, record(sway()))] == ["feet_exchanged"] * bool(names)
+
+
 @pytest.mark.parametrize("pitch", [0.0, 1.2])
 def test_bushes_turn_and_move_with_their_ankles(tmp_path: Path, pitch: float) -> None:
     """Far above and below their ankles, they stay beside each other in ankles that pitch alike; before and behind them

@@ -195,7 +195,8 @@ def test_the_command_ends_with_the_counts(
         "kelvin_voigt",
     ]
     assert run(*command) == 0
-    last = capsys.readouterr().out.splitlines()[-1]
+    *_, failed, _, last = capsys.readouterr().out.splitlines()
+    assert failed.startswith("failed, 1 like this: ")
     assert last == "2 groups: 1 with results, 0 were there already, 1 failed, 1 failures in failures.parquet"
     page = (tmp_path / "out" / "fleet.html").read_text()
     assert "1 groups" in page or "2 groups of" in page

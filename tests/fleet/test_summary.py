@@ -95,7 +95,10 @@ def test_the_page_shows_alarms_first_and_escapes_names(summary: FleetSummary) ->
 
 def test_a_page_of_nothing_is_a_page() -> None:
     empty = summary_of(results([]), failures(), false_alarms=FALSE_ALARMS)
-    assert "None." in fleet_page(empty, groups=(), run=None)
+    page = fleet_page(empty, groups=(), run=None)
+    assert "None." in page
+    assert "none is watched" in page
+    assert "<table" not in page, "no heads without rows"
 
 
 def test_only_usable_positive_values_count() -> None:

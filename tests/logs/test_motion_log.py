@@ -79,6 +79,18 @@ def test_a_missing_column_is_named_with_its_neighbours() -> None:
     assert log.joint("knee", "effort") is None
 
 
+def test_a_sensor_of_another_name_is_answered_with_the_names_that_the_log_has() -> None:
+    log = make(wrench__lfoot__force__z=[1.0, 2.0, 3.0])
+    assert log.devices("wrench") == ["wrench.lfoot"]
+    assert log.devices("imu") == []
+    with pytest.raises(
+        LogError, match=r"is missing \(valid: in the robot file wrench\.name as the log has it: lfoot\)"
+    ):
+        log.column("wrench.left.force.z")
+    with pytest.raises(LogError, match=r"is missing \(valid: the log has wrench\.lfoot\.force\.z\)"):
+        log.column("wrench.lfoot.force.x")
+
+
 def test_vectors_are_stacked_in_the_contracts_order() -> None:
     parts = [f"wrench.left.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
     log = MotionLog(

@@ -42,7 +42,8 @@ DATA_FAULTS = (
         ("feet/assess/test_play.py",),
     ),
     Mutant(
-        "feet/assess/play.py", "play need not explain more than the model", "BETTER = 1.5", "BETTER = 0.0",
+        "feet/assess/play.py", "play need not explain more than the model",
+        "BETTER * found.squares", "0.0 * found.squares",
         ("feet/assess/test_play.py",),
     ),
     Mutant(

@@ -137,7 +137,7 @@ FIT = (
     ),
     Mutant(
         "feet/fit/axis_fit.py", "all stances together taken for the usual one",
-        "seconds / len(stances) > SHORT_STANCE", "seconds > SHORT_STANCE",
+        "seconds / len(stances) > LONGEST_STANCE", "seconds > LONGEST_STANCE",
     ),
     Mutant(
         "feet/regression/model_columns.py", "columns of a model with memory unfiltered",

@@ -245,7 +245,7 @@ DRAWN_ANEW = (
     Mutant(
         "whole_body/sensor_calibration.py",
         "before and after exchanged",
-        "{before[channel]:.3g}, and by {after[channel]:.3g} {text}",
-        "{after[channel]:.3g}, and by {before[channel]:.3g} {text}",
+        "{after[channel]:.3g} {text}",
+        "{before[channel]:.3g} {text}",
     ),
 )

@@ -35,7 +35,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "faults/bush_frames.py", "feet beside each other are before each other",
-        "if x > BEFORE * y", "if y > BEFORE * x", ("faults/test_bush_axes.py",),
+        "if abs(x) > BEFORE * abs(y)", "if abs(y) > BEFORE * abs(x)", ("faults/test_bush_axes.py",),
     ),
     Mutant(
         "faults/log_faults.py", "rows that got lost are bursts",

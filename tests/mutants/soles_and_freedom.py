@@ -6,10 +6,10 @@ from mutant import Mutant
 
 SOLES_AND_FREEDOM = (
     Mutant(
-        "feet/exclusion/sole_velocity.py",
+        "contact/phases.py",
         "shaking from where rates tell it",
-        "min(SHAKEN, 0.2 / period)",
-        "max(SHAKEN, 0.2 / period)",
+        "min(SHAKING_BAND, 0.2 / period)",
+        "max(SHAKING_BAND, 0.2 / period)",
         ("feet/exclusion/test_sole_motion.py",),
     ),
     Mutant(

@@ -91,12 +91,12 @@ def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
     result = FeetResult("b", (), {}, "kelvin_voigt", (), (), (), (row("a", 0.5), row("b", 2.0)), ())
     assert trust(result) == ()
     assert reach(result) == (
-        "On motions it has not seen, the model beats predicting the offset alone in 1 of 2 cases; it has "
-        "learnt nothing for b left pitch.",
+        "On motions it has not seen, the model beats predicting the offset alone in 1 of 2 cases; not for b "
+        "left pitch (2.0 against 1.0 N·m).",
     )
     lost = tuple(row(f"m{place}", 2.0) for place in range(8))
     (text,) = reach(replace(result, validation=lost))
-    assert text.endswith("m4 left pitch and 3 more (marked in the table).")
+    assert text.endswith("m4 left pitch (2.0 against 1.0 N·m) and 3 more (marked in the table).")
     assert "in 0 of 8 cases" in text
 
 

@@ -30,4 +30,9 @@ def test_a_reason_of_no_time_is_not_told() -> None:
         Phase("a", "left", 20.0, 20.02, "double", False, "gap"),
     ]
     assert [row.reasons for row in used_shares(phases)] == [""]
+    kinds = [
+        Phase("a", "left", start, start + 1.0, "double", False, f"slip: {why}")
+        for start, why in ((0.0, "the sole turns"), (1.0, "the soles move"))
+    ]
+    assert [row.reasons for row in used_shares(kinds)] == ["slip (2.0 s)"]
     assert "gap (0.1 s)" in used_shares([Phase("a", "left", 0.0, 0.06, "double", False, "gap")])[0].reasons

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 from typer import Argument, Option
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.terminal import console, end_progress, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.exporters.job import LEAST_LOAD, Stance
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 if TYPE_CHECKING:

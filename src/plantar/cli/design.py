@@ -12,7 +12,6 @@ from plantar.cli.console import options
 from plantar.cli.console.terminal import (
     console,
     end_progress,
-    number,
     print_json,
     print_notes,
     progress,
@@ -24,6 +23,7 @@ from plantar.logs.save import save_log
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 if TYPE_CHECKING:

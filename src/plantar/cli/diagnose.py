@@ -7,11 +7,12 @@ from dataclasses import asdict
 from rich.markup import escape
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import VERDICT_STYLE, console, number, print_json, table
+from plantar.cli.console.terminal import VERDICT_STYLE, console, print_json, table
 from plantar.cli.identify.feet_tables import print_advice
 from plantar.errors import PlantarError
 from plantar.results.feet import FeetResult
 from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
+from plantar.results.numbers import number
 from plantar.results.usage import used_shares
 
 
@@ -42,7 +43,10 @@ def run(result: options.FeetFile, json: options.Json = False) -> None:
     heads = ("foot", "axis", "parameter", "± % (95 %)", "limited by", "share of the variance")
     screen.print(table("What limits each number", heads, cells, styles))
     print_advice(screen, found.parameters)
-    for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
+    told = {row.advice for row in found.parameters}
+    for limit, advice in {
+        row.limit: row.advice for row in diagnosis if row.advice and row.advice not in told
+    }.items():
         screen.print(escape(f"Against {limit}: {advice}."))
     if allowed := assumption_cells(found.assumptions):
         screen.print(table("\nWhat the robot file may be wrong about", ASSUMPTION_HEADS, allowed))

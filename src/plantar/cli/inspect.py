@@ -18,7 +18,6 @@ from plantar.cli.console.terminal import (
     VERDICT_STYLE,
     console,
     end_progress,
-    number,
     print_json,
     progress,
     table,
@@ -26,8 +25,9 @@ from plantar.cli.console.terminal import (
 from plantar.errors import LogError
 from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
-from plantar.notes import Note
+from plantar.notes import NAMED, Finding, Note
 from plantar.results.feet_text import ASSUMPTION_HEADS, assumption_cells
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 
@@ -62,6 +62,10 @@ def run(
     elif not quiet:
         for summary in summaries:
             _print(console(), summary, columns, "URDF" if loaded.weighed is None else "robot, as weighed,")
+        if not loaded.feet:
+            console().print(
+                f"{escape(robot.name)} names no feet: `plantar identify joints` is for such a robot"
+            )
     if unread:
         raise unread[0] if len(unread) == 1 else LogError("; ".join(map(str, unread)))
     if any(finding.fatal for summary in summaries for finding in summary.findings):
@@ -81,14 +85,18 @@ def _print(out: Console, log: LogSummary, columns: bool, weighs: str) -> None:
         out.print(f"  {escape(column.name)}: {column.missing} samples without a value")
     if log.carried is not None:
         out.print(
-            f"  the feet carry {log.carried:.2f} kg on average{_still_inside(log)}; the {weighs} "
+            f"  the feet carry {log.carried:.2f} kg on average{_as_recorded(log)}; the {weighs} "
             f"weighs {log.mass:.2f} kg"
         )
+    alike: dict[tuple[str, bool], list[Finding]] = {}
     for finding in log.findings:
-        style, kind = (
-            ("red", "problem") if finding.fatal else (SEVERITY_STYLE[finding.severity], finding.severity)
-        )
-        out.print(f"  [{style}]{kind}[/]: {escape(finding.text)}")
+        alike.setdefault((finding.code, finding.fatal), []).append(finding)
+    for (_, fatal), (first, *others) in sorted(alike.items(), key=lambda entry: not entry[0][1]):
+        style, kind = ("red", "problem") if fatal else (SEVERITY_STYLE[first.severity], first.severity)
+        for finding in (first, *others[: NAMED - 1]):
+            out.print(f"  [{style}]{kind}[/]: {escape(finding.text)}")
+        if len(others) >= NAMED:
+            out.print(f"  and {len(others) + 1 - NAMED} more like these; --json has all")
     if log.feet:
         out.print(table("Feet", ("foot", "both stand s", "alone s", "load N", "used s", "pitch deg rms", "roll deg rms",
                                  "pitch rad/s rms", "roll rad/s rms"), _foot_rows(log)))  # fmt: skip
@@ -112,10 +120,10 @@ def _print(out: Console, log: LogSummary, columns: bool, weighs: str) -> None:
     _print_notes(out, [note for note in log.notes if note.severity != "warning"])
 
 
-def _still_inside(log: LogSummary) -> str:
+def _as_recorded(log: LogSummary) -> str:
     """Whether zeros of force sensors stand in what the feet carry."""
     off = any(finding.code == "air_reading" for finding in log.findings)
-    return ", in which the zeros named below are still inside unless taken off" if off else ""
+    return " as recorded, zeros of the force sensors included" if off else ""
 
 
 def _print_notes(out: Console, notes: Sequence[Note]) -> None:

@@ -16,7 +16,6 @@ from plantar.cli.console.terminal import (
     VERDICT_STYLE,
     console,
     end_progress,
-    number,
     print_json,
     print_notes,
     progress,
@@ -33,6 +32,7 @@ from plantar.online.replay import UNKNOWN, Replay
 from plantar.online.verdicts import judged, log_notes
 from plantar.pages import ONLINE
 from plantar.results.feet import FeetResult, Parameter
+from plantar.results.numbers import number
 from plantar.robot.model import RobotModel, load_robot
 
 if TYPE_CHECKING:  # what prints nothing does not import it

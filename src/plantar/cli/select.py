@@ -9,10 +9,11 @@ from typing import Annotated, Any
 from typer import Argument, Option
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, number, print_json, progress, table
+from plantar.cli.console.terminal import console, end_progress, print_json, progress, table
 from plantar.logs.inputs import open_together
 from plantar.motions.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.results.feet_text import SYMBOLS
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 

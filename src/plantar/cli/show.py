@@ -9,8 +9,9 @@ from typing import Annotated
 from typer import Argument
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, number, print_json, table
+from plantar.cli.console.terminal import console, print_json, table
 from plantar.results.feet import FeetResult
+from plantar.results.numbers import number
 from plantar.results.reference import neighbours
 
 

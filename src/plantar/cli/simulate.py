@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 from typer import Argument, Option
 
 from plantar.cli.console import options
-from plantar.cli.console.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.terminal import console, end_progress, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.files import refuse_file
+from plantar.results.numbers import number
 from plantar.robot.model import load_robot
 
 if TYPE_CHECKING:
@@ -130,8 +131,8 @@ def run(
         (one.name, number(one.log.duration), f"{len(one.log)}", f"{out / one.name}.parquet")
         for one in recordings
     ]
-    title = f"{chosen}, seed {seed}; robot file {robot_file}"
-    console().print(table(title, ("motion", "s", "samples", "log"), rows))
+    console().print(table(f"{chosen}, seed {seed}", ("motion", "s", "samples", "log"), rows))
+    print(robot_file)
 
 
 def _fleet(out: Path, robots: int, days: int, preset: str | None, seed: int, quiet: bool) -> None:

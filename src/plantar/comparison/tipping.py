@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.contact.balance import LOADED, zero_moment_point
+from plantar.contact.balance import zero_moment_point
+from plantar.contact.phases import LIFTING_SHARE
 from plantar.contact.polygon import inside_distance
 from plantar.conventions import GRAVITY
 from plantar.feet.settings import FeetSettings
@@ -18,7 +19,7 @@ def on_an_edge(robot: RobotModel, log: MotionLog) -> float | None:
     """Seconds from the start of the log until a foot's centre of pressure is as near to its sole's border as samples
     that identification leaves out; None where it never is.
     """
-    least, margin = LOADED * robot.mass * GRAVITY, FeetSettings().edge_margin
+    least, margin = LIFTING_SHARE * robot.mass * GRAVITY, FeetSettings().edge_margin
     found = []
     for foot in robot.feet.values():
         sole, sensor = (robot.frame(place)[1] for place in (foot.sole.placement, foot.wrench.placement))

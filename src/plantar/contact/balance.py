@@ -12,13 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import pinocchio as pin
 
+from plantar.contact.phases import LIFTING_SHARE
 from plantar.contact.polygon import convex_hull, inside_distance
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array
 from plantar.errors import DataError, MotionError
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-
-LOADED = 0.05  # of the robot's weight: below it the wrenches say nothing about a centre of pressure
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,9 @@ def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Arra
     if not robot.feet:
         raise DataError("has no feet, so there is no balance to measure", path=robot.path)
     poses = dict(soles) if soles is not None else flat_soles(robot, log.positions(robot)[0])
-    least = LOADED * robot.mass * GRAVITY
+    least = (
+        LIFTING_SHARE * robot.mass * GRAVITY
+    )  # with less a foot is in the air, and has no centre of pressure
     total, carrying = np.zeros((len(log), 6)), {}
     for name, foot in robot.feet.items():
         if name not in poses:

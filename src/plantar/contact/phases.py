@@ -23,7 +23,7 @@ SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not 
 SETTLING_SHARE = 0.1  # of a stance, at most: a foot that steps lands and lifts faster
 SHORTEST_STANCE = 0.5  # s: shorter contacts are scuffs or impacts, not stances
 
-SHAKING_BAND = 20.0  # Hz: no robot that stands is loaded on purpose so fast
+SHAKING_BAND = 20.0  # Hz: no robot that stands is loaded or moved on purpose so fast
 SHAKING_TIME = 0.1  # s over which shaking is judged
 SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
@@ -143,11 +143,16 @@ def shaken(force: Array, weight: float, period: float) -> Mask:
     There the recorded values are aliases: of force and torque, of the accelerometer, of rates. SETTLING_TIME after an
     impact counts to it, as after a landing.
     """
-    quick = np.nan_to_num(force - low_pass(force, period, min(SHAKING_BAND, 0.2 / period)))
+    quick = quick_part(force, period)
     reach = max(1, round(SHAKING_TIME / 2 / period))
     size = np.sqrt(_means_around(np.sum(quick**2, axis=1), reach))
     struck = np.asarray(size > max(SHAKING_SHARE * weight, SHAKING_NOISE * float(np.percentile(size, 10))))
     return widened(struck, reach, round(SETTLING_TIME / period))
+
+
+def quick_part(values: Array, period: float) -> Array:
+    """What of a force's or an acceleration's components (N, k) is quicker than SHAKING_BAND; 0 where unknown."""
+    return np.nan_to_num(values - low_pass(values, period, min(SHAKING_BAND, 0.2 / period)))
 
 
 def hoisted(load: Array, weight: float, period: float) -> Mask:

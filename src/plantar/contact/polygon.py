@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.conventions import Array
-
-ROUNDING = 1e-12  # of the points' extent squared: a smaller turn is none
+from plantar.conventions import ROUNDING, Array
 
 
 def convex_hull(points: Array) -> Array:

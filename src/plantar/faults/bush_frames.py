@@ -21,7 +21,8 @@ BEFORE = 3.0  # times as far before or behind as beside: no posture of a whole l
 
 
 def check_bush_axes(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """A finding for each bush whose x axis points to the other foot: what is called pitch would be roll.
+    """A finding for each bush whose x axis points to the other foot: what is called pitch would be roll; and one where
+    `left` stands on the right of `right`.
 
     In the log's usual posture; not of robots with another number of feet than two.
     """
@@ -35,9 +36,17 @@ def check_bush_axes(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         turn = rotations[carrier, 0]
         frames[name] = turn @ placement.rotation, places[carrier, 0] + turn @ placement.translation
     (first, second) = (place for _, place in frames.values())
-    for name, (turn, _) in frames.items():
-        x, y, _ = np.abs(turn.T @ (second - first))
-        if x > BEFORE * y:
+    apart = {name: turn.T @ (second - first) for name, (turn, _) in frames.items()}
+    if set(apart) == {"left", "right"}:
+        leftward = 1 if next(iter(apart)) == "right" else -1  # from the first foot to the second
+        if all(leftward * y < -abs(x) for x, y, _ in apart.values()):
+            text = (
+                "robot file, feet: left stands on the right of right (valid: exchange the two names; or, where x of "
+                "their bushes points to the heels, turn it to the toes)"
+            )
+            yield Finding("feet_exchanged", text)
+    for name, (x, y, _) in apart.items():
+        if abs(x) > BEFORE * abs(y):
             text = (
                 f"robot file, feet.{name}.bush.rpy: its x axis points to the other foot: pitch and roll would be "
                 "exchanged (valid: x to the toes, y to the left, z up)"

@@ -49,7 +49,7 @@ def device_of(column: str) -> str:
 HARMLESS = 3  # names of joints that no foot needs: more of them only fill the screen
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MotionLog:
     """One recording: a time base and labelled columns. Made by `open_log`, or from arrays.
 
@@ -68,6 +68,8 @@ class MotionLog:
         >>> import numpy as np, plantar
         >>> time = np.arange(0.0, 2.0, 0.01)
         >>> log = plantar.MotionLog("still", time, {"joint.knee.position": np.zeros(200)})
+        >>> log
+        <MotionLog still: 2.0 s, 200 samples, 1 columns>
         >>> log.column("joint.knee.position").shape, f"{log.duration:.2f} s"
         ((200,), '1.99 s')
     """
@@ -119,6 +121,10 @@ class MotionLog:
     def __len__(self) -> int:
         return int(self.time.size)
 
+    def __repr__(self) -> str:
+        sampled = f"{self.duration:.1f} s, {len(self)} samples, {len(self.columns)} columns"
+        return f"<{type(self).__name__} {self.name}: {sampled}>"
+
     @property
     def size(self) -> int:
         """Bytes of its numbers."""
@@ -141,13 +147,24 @@ class MotionLog:
         """Whether all columns of an IMU of these `kinds` are there; kinds as in `imu_columns`."""
         return self.has(*imu_columns(imu, *kinds))
 
+    def devices(self, kind: str) -> list[str]:
+        """The sensors of a kind, "imu" or "wrench", that the log has columns of: `wrench.left`."""
+        return list(dict.fromkeys(device_of(name) for name in self.columns if name.startswith(f"{kind}.")))
+
     def column(self, name: str) -> Array:
         """One column, (N,); LogError names it when it is missing, and the nearest that is there."""
         try:
             return self.columns[name]
         except KeyError:
-            near = difflib.get_close_matches(name, self.columns, n=2)
+            kind, near = name.partition(".")[0], difflib.get_close_matches(name, self.columns, n=2)
             valid = f"the log has {', '.join(near)}" if near else None
+            if (
+                kind in ("imu", "wrench")
+                and (devices := self.devices(kind))
+                and device_of(name) not in devices
+            ):
+                names = ", ".join(device.partition(".")[2] for device in devices)
+                valid = f"in the robot file {kind}.name as the log has it: {names}"
             raise LogError("is missing", path=self.source, column=name, valid=valid) from None
 
     def stack(self, names: Iterable[str]) -> Array:

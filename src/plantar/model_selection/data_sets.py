@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from plantar.conventions import Array, Mask
 from plantar.estimation.orthonormal import SlowSpan, orthonormal, without
 from plantar.estimation.slow_drift import DRIFT_PERIOD, drift_basis, drift_beside
-from plantar.models import BushModel, BushMotion
+from plantar.models import BESIDE, BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_FITTED_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
@@ -205,12 +205,12 @@ def filtered_columns(
 ) -> Array:
     """A model's columns beside the linear two through the filter, at the used samples: (n, e, b), those of all data
     sets one below the other."""
-    extras = model.basis_columns([each.path for each in prepared], shapes, initial_states)
-    found, first = np.empty((sum(len(each.response) for each in prepared), *extras[0].shape[1:])), 0
-    for each, extra in zip(prepared, extras, strict=True):
-        last = first + len(each.response)
-        if extra.shape[1]:
-            smooth = low_pass(extra, each.motion.period, each.cutoff, SHORTEST_FITTED_RUN, each.every)
-            found[first:last] = each.without_nuisance(smooth[each.used])
-        first = last
+    rows, count = [len(each.response) for each in prepared], len(model.terms) - len(BESIDE)
+    found = np.empty((sum(rows), count, len(shapes)))
+    if not count:
+        return found
+    for each, start, last in zip(prepared, initial_states, np.cumsum(rows), strict=True):
+        extra = model.basis_columns(each.path, shapes, start)
+        smooth = low_pass(extra, each.motion.period, each.cutoff, SHORTEST_FITTED_RUN, each.every)
+        found[last - len(each.response) : last] = each.without_nuisance(smooth[each.used])
     return found

@@ -10,7 +10,7 @@ from plantar.conventions import Array, Mask
 from plantar.models import BESIDE, BushModel, BushMotion
 from plantar.signals.filters import low_pass
 
-TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory
+TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory where a run begins
 # Of the span between the torques of the extreme initial states: below it the state has faded.
 FORGOTTEN = 0.02
 
@@ -31,7 +31,7 @@ def initial_states_of(
     the sensors' offset.
     """
     tried = np.repeat(TRIED[:, None], len(motion.runs), axis=1)
-    extra = model.basis_columns([motion], np.repeat(shape[None, :], len(TRIED), axis=0), [tried])[0]
+    extra = model.basis_columns(motion, np.repeat(shape[None, :], len(TRIED), axis=0), tried)
     own = len(BESIDE)
     memory = low_pass(np.einsum("neb,e->nb", extra, values[own:]), motion.period, cutoff)
     every = memory.T + np.column_stack([motion.deflection, motion.rate]) @ values[:own]

@@ -102,12 +102,10 @@ class BushModel(ABC):
         return np.zeros((1, 0))
 
     @abstractmethod
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
-        """The columns beside deflection and rate, (N, e, b) for every motion; NaN outside its runs.
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
+        """The columns beside deflection and rate, (N, e, b); NaN outside the motion's runs.
 
-        `shapes` (b, s), nonlinear parameters, and `initial_states` (b, runs) of each motion are b variants.
+        `shapes` (b, s), nonlinear parameters, and `initial_states` (b, runs) are b variants.
         """
 
     def columns(
@@ -118,8 +116,8 @@ class BushModel(ABC):
             np.zeros(len(motion.runs)) if initial_states is None else np.asarray(initial_states, dtype=float)
         )
         extra = self.basis_columns(
-            [motion], np.reshape(np.asarray(shape, dtype=float), (1, -1)), [initial_states[None, :]]
-        )[0]
+            motion, np.reshape(np.asarray(shape, dtype=float), (1, -1)), initial_states[None, :]
+        )
         columns = np.column_stack([motion.deflection, motion.rate, extra[:, :, 0]])
         columns[~np.isfinite(columns).all(axis=1)] = np.nan
         return columns

@@ -35,8 +35,6 @@ class Coulomb(BushModel):
         fast = float(np.percentile(rates, 98)) or 1.0
         return np.geomspace(SHARPEST * fast, SMOOTHEST * fast, 9)[:, None]
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """Sign of the rate, smooth: (N, 1, b)."""
-        return [np.tanh(motion.rate[:, None, None] / shapes[:, 0]) for motion in motions]
+        return np.asarray(np.tanh(motion.rate[:, None, None] / shapes[:, 0]))

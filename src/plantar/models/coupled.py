@@ -30,14 +30,9 @@ class Coupled(BushModel):
         """Whether every motion has the other axis."""
         return all(motion.across is not None and motion.across_rate is not None for motion in motions)
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """Deflection and rate of the other axis, (N, 2, b). Raises DataError where a motion lacks them."""
-        columns = []
-        for motion in motions:
-            if motion.across is None or motion.across_rate is None:
-                raise DataError("the coupled model needs the deflection of the foot's other axis")
-            pair = np.column_stack([motion.across[:, 0], motion.across_rate[:, 0]])
-            columns.append(np.repeat(pair[:, :, None], len(shapes), axis=2))
-        return columns
+        if motion.across is None or motion.across_rate is None:
+            raise DataError("the coupled model needs the deflection of the foot's other axis")
+        pair = np.column_stack([motion.across[:, 0], motion.across_rate[:, 0]])
+        return np.repeat(pair[:, :, None], len(shapes), axis=2)

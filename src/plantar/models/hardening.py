@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -27,16 +26,11 @@ class Hardening(BushModel):
     tried_states: ClassVar[tuple[float, ...]] = (-0.5, 0.0, 0.5)
     units: ClassVar[dict[str, tuple[str, str]]] = {"hardening": ("N.m/rad3", "N/m3")}
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """The cube of the deflection about its true zero, (N, 1, b)."""
-        columns = []
-        for motion, start in zip(motions, initial_states, strict=True):
-            column = np.full((len(motion), 1, len(shapes)), np.nan)
-            for place, run in enumerate(motion.runs):
-                error = ZERO_ERROR * start[:, place]
-                away = motion.deflection[run, None] - error
-                column[run, 0] = away * away * away + error**3  # ten times quicker than a power
-            columns.append(column)
-        return columns
+        column = np.full((len(motion), 1, len(shapes)), np.nan)
+        for place, run in enumerate(motion.runs):
+            error = ZERO_ERROR * initial_states[:, place]
+            away = motion.deflection[run, None] - error
+            column[run, 0] = away * away * away + error**3  # ten times quicker than a power
+        return column

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -26,13 +25,9 @@ class HardeningElastoplastic(Elastoplastic):
     elaborates: ClassVar[str | None] = Elastoplastic.name
     units: ClassVar[dict[str, tuple[str, str]]] = {**Elastoplastic.units, **Hardening.units}
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """The state z and the cube, (N, 2, b)."""
-        columns = []
-        for motion, slip in zip(motions, super().basis_columns(motions, shapes, initial_states), strict=True):
-            both = np.repeat(slip, 2, axis=1)
-            both[:, 1] = np.where(np.isfinite(slip[:, 0, :1]), motion.deflection[:, None] ** 3, np.nan)
-            columns.append(both)
-        return columns
+        slip = super().basis_columns(motion, shapes, initial_states)
+        both = np.repeat(slip, 2, axis=1)
+        both[:, 1] = np.where(np.isfinite(slip[:, 0, :1]), motion.deflection[:, None] ** 3, np.nan)
+        return both

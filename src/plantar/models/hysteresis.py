@@ -73,12 +73,6 @@ class Hysteretic(BushModel):
         first = np.array([motion.deflection[run.start] for run in motion.runs])
         return np.asarray(np.clip(first / shape[0], -1.0, 1.0))
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """The state z, (N, 1, b)."""
-        paths = (Path.of(motion) for motion in motions)
-        return [
-            self.states(path, shapes, start.T)[:, None, :]
-            for path, start in zip(paths, initial_states, strict=True)
-        ]
+        return self.states(Path.of(motion), shapes, initial_states.T)[:, None, :]

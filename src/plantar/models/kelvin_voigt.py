@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -16,8 +15,6 @@ class KelvinVoigt(BushModel):
 
     name: ClassVar[str] = "kelvin_voigt"
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """No columns beside the two: (N, 0, b)."""
-        return [np.zeros((len(motion), 0, len(shapes))) for motion in motions]
+        return np.zeros((len(motion), 0, len(shapes)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar import _core
 from plantar.conventions import Array
-from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion
 
 FASTEST = 0.05  # s: faster relaxation is a damper in the band that a bush is identified in
 LONGEST_SHARE = 0.1  # of the longest run: slower relaxation is drift
@@ -43,21 +43,15 @@ class StandardLinearSolid(BushModel):
         )
         return np.geomspace(FASTEST, max(LONGEST_SHARE * longest, 4 * FASTEST), 12)[:, None]
 
-    def basis_columns(
-        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
-    ) -> list[Array]:
+    def basis_columns(self, motion: BushMotion, shapes: Array, initial_states: Array) -> Array:
         """Deflection of the relaxing spring, (N, 1, b), exact for a deflection linear between samples."""
-        columns = []
-        for motion, start in zip(motions, initial_states, strict=True):
-            column = np.full((len(motion), 1, len(shapes)), np.nan)
-            scale = reach([motion])
-            for place, run in enumerate(motion.runs):
-                ratio = motion.period / shapes[:, 0]
-                column[run, 0] = _core.relaxation(
-                    np.ascontiguousarray(motion.deflection[run]),
-                    np.exp(-ratio),
-                    -np.expm1(-ratio) / ratio,
-                    start[:, place] * scale,
-                )
-            columns.append(column)
-        return columns
+        column = np.full((len(motion), 1, len(shapes)), np.nan)
+        ratio = motion.period / shapes[:, 0]
+        for place, run in enumerate(motion.runs):
+            column[run, 0] = _core.relaxation(
+                np.ascontiguousarray(motion.deflection[run]),
+                np.exp(-ratio),
+                -np.expm1(-ratio) / ratio,
+                initial_states[:, place] * motion.swing,
+            )
+        return column

@@ -13,7 +13,7 @@ from plantar.report.content import Cell, Column, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import LEADS, listed
-from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, DynamicsScore
+from plantar.results.dynamics import JOINTS_SCHEMA, ONE_OF_MANY, DynamicsResult, DynamicsScore
 from plantar.results.io import result_path
 from plantar.results.numbers import interval, number, percent, unit, with_uncertainty
 
@@ -65,7 +65,7 @@ def write_dynamics_report(result: str | os.PathLike[str], out: str | os.PathLike
 def _inertia_verdict(result: DynamicsResult) -> list[str]:
     condition = number(result.condition_number, 2)
     text = f"The logs determine {result.rank} base parameters, with a condition number of {condition}."
-    return [text, *_prediction(result)]
+    return [text, ONE_OF_MANY, *_prediction(result)]
 
 
 def _joints_verdict(result: DynamicsResult) -> list[str]:

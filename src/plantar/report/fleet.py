@@ -36,7 +36,7 @@ def fleet_page(summary: FleetSummary, groups: Sequence[GroupRow], run: Mapping[s
         alarms=summary.alarms[:SHOWN],
         more_alarms=max(0, len(summary.alarms) - SHOWN),
         rate=f"{summary.false_alarms:.3g}",
-        tables=[_robots(summary), _effects(summary), _trends(summary)],
+        tables=[one for one in (_robots(summary), _effects(summary), _trends(summary)) if one.rows],
         failures=_failures(summary),
         units=units,
     )
@@ -47,6 +47,10 @@ def _verdict(summary: FleetSummary, units: int, run: Mapping[str, Any]) -> list[
     counts = {"group": summary.groups, "robot": units, "failure": failed, "alarm": len(summary.alarms)}
     groups, *rest = (f"{count} {what}{'' if count == 1 else 's'}" for what, count in counts.items())
     sentences = [f"{groups} of {'; '.join(rest)}."]
+    if not summary.levels:
+        sentences.append(
+            "No number is usable, so none is watched and no alarm can come. `plantar report` of a group says why."
+        )
     done, seconds = run.get("done"), run.get("seconds")
     if isinstance(done, int) and isinstance(seconds, float) and done and seconds > 0:
         reused = run.get("reused", 0)

@@ -119,7 +119,10 @@ def validation_table(validation: Sequence[ValidationRow], kind: str) -> Table:
         "direct": "Table 2. Direct validation: the motions used for the fit",
         "cross": "Table 3. Cross-validation: motions that the fit has not seen",
     }[kind]
-    remark = "A model that does not beat its own offset has learnt nothing."
+    remark = (
+        "Where the model does not beat its own offset, either it has learnt nothing or the motion hardly bends the "
+        "foot: then the offset's error is small, too."
+    )
     if kind == "cross":
         remark += (
             " The unseen motion's offset comes from its first second, which is left out of the score; where a foot "
@@ -184,7 +187,8 @@ def used_table(phases: Sequence[Phase]) -> Table:
         rows.append((one.motion, one.foot, *lengths, one.reasons or "nothing left out"))
     columns = [*Column.words("motion", "foot"), Column("length", "s"), Column("used", "s"), Column("share")]
     columns += Column.words("left out because")
-    return Table.of("What is used of each log", columns, rows)
+    remark = "The bars of each motion, below, say where and why in full."
+    return Table.of("What is used of each log", columns, rows, remark=remark)
 
 
 def input_table(inputs: Sequence[Input]) -> Table:
@@ -201,12 +205,19 @@ def settings_table(settings: Mapping[str, Any]) -> Table:
     return Table.of("Settings", Column.words("setting", "value"), rows)
 
 
+def _text(value: object) -> str:
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(_text, value))
+    if isinstance(value, float):
+        return number(value)
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
 def _flat(settings: Mapping[str, Any], prefix: str, depth: int = 0) -> list[tuple[str, str]]:
     lines: list[tuple[str, str]] = []
     for key, value in settings.items():
         if isinstance(value, Mapping) and value and depth < 4:
             lines += _flat(value, f"{prefix}{key}.", depth + 1)
         else:
-            text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-            lines.append((f"{prefix}{key}", number(value) if isinstance(value, float) else text))
+            lines.append((f"{prefix}{key}", _text(value)))
     return lines

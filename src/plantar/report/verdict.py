@@ -9,7 +9,7 @@ from typing import Final
 from plantar.report.content import Mark
 from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.feet_text import SYMBOLS
-from plantar.results.numbers import unit, with_uncertainty
+from plantar.results.numbers import number, unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
 LEADS: Final = {"usable": "Trust", "weak": "Use with care", "unidentifiable": "Do not use"}
@@ -169,13 +169,19 @@ def _skill(validation: Sequence[ValidationRow], kind: str) -> list[str]:
     if not rows:
         return ["No unseen motion was given, so nothing here is cross-validated."] if kind == "cross" else []
     what = "On motions it has not seen" if kind == "cross" else "On the motions that it was fitted to"
-    failed = [f"{row.motion} {row.foot} {row.axis}" for row in rows if not row.has_skill]
+    failed = [_not_beaten(row) for row in rows if not row.has_skill]
     beaten = f"{len(rows) - len(failed)} of {len(rows)}"
     text = f"{what}, the model beats predicting the offset alone in {beaten} cases"
     if not failed:
         return [text + "."]
     shown = failed if len(failed) <= 6 else [*failed[:5], f"{len(failed) - 5} more (marked in the table)"]
-    return [f"{text}; it has learnt nothing for {listed(shown)}."]
+    return [f"{text}; not for {listed(shown)}."]
+
+
+def _not_beaten(row: ValidationRow) -> str:
+    """Which row, and both errors: where the foot hardly moves they are small, and there is nothing to predict."""
+    errors = f"{number(row.mean_abs_error, 2)} against {number(row.zero_mean_abs, 2)}"
+    return f"{row.motion} {row.foot} {row.axis} ({errors} {'N' if row.axis == 'z' else 'N·m'})"
 
 
 def listed(names: Sequence[str]) -> str:

@@ -24,12 +24,16 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 __all__ = [
-    "INERTIA_SCHEMA", "JOINTS_SCHEMA", "URDF", "BaseParameter", "DynamicsResult", "DynamicsScore",
+    "INERTIA_SCHEMA", "JOINTS_SCHEMA", "ONE_OF_MANY", "URDF", "BaseParameter", "DynamicsResult", "DynamicsScore",
     "InertialParameter", "JointParameter",
 ]  # fmt: skip
 
 INERTIA_SCHEMA: Final = "plantar.inertia/1"
 JOINTS_SCHEMA: Final = "plantar.joints/1"
+ONE_OF_MANY: Final = (
+    "Motions show base parameters, which combine those of several links. Use all links together: the numbers of one "
+    "link alone may be far off."
+)
 URDF: Final = "identified.urdf"  # beside result.json: the robot with the inertias found
 
 

@@ -48,5 +48,5 @@ def read_result(
         raise error(f"is not readable JSON: {problem}", path=file, valid="a result.json") from problem
     found = content.get("schema") if isinstance(content, dict) else None
     if not isinstance(found, str) or not found.startswith(schema):
-        raise error("is not such a result", path=file, value=found, valid=f"schema '{schema}...'")
+        raise error("is another kind of result", path=file, value=found, valid=f"schema '{schema}...'")
     return dict(content)

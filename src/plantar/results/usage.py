@@ -14,7 +14,8 @@ LEAST = 0.05  # s: of less nobody needs a reason
 
 @dataclass(frozen=True)
 class UsedShare:
-    """Seconds of one foot in one motion, those of them that were used, and those left out by their reasons."""
+    """Seconds of one foot in one motion, those of them that were used, and those left out by the kind of their reason:
+    what stands before the colon in `in the air: no load on this foot`."""
 
     motion: str
     foot: str
@@ -45,5 +46,5 @@ def used_shares(phases: Iterable[Phase]) -> list[UsedShare]:
         if phase.used:
             used[key] += duration
         elif duration > 0:
-            left_out[key][phase.reason or phase.support] += duration
+            left_out[key][(phase.reason or phase.support).partition(":")[0]] += duration
     return [UsedShare(*key, total, used[key], left_out[key]) for key, total in seconds.items()]

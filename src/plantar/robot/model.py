@@ -84,7 +84,7 @@ class JointTerms:
     passive: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RobotModel:
     """A URDF with the sensors and feet that the robot file gives it. Made by `load_robot`.
 
@@ -101,14 +101,16 @@ class RobotModel:
     Example:
         >>> import plantar
         >>> robot = plantar.load_robot("robot.yaml")
-        >>> robot.imu.name, list(robot.feet), round(robot.mass)
-        ('chest', ['left', 'right'], 60)
+        >>> robot
+        <RobotModel biped: floating base, feet left, right, IMU chest>
+        >>> robot.feet["left"].ankle, round(robot.mass)
+        ('left_foot', 60)
     """
 
     name: str
     path: Path
     urdf_path: Path
-    urdf: str = field(repr=False)
+    urdf: str
     base: Literal["floating", "fixed"]
     imu: Imu | None
     feet: Mapping[str, Foot]
@@ -119,6 +121,10 @@ class RobotModel:
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     guesses: tuple[Guess, ...] = ()
     weighed: float | None = None
+
+    def __repr__(self) -> str:
+        sensed = "no IMU" if self.imu is None else f"IMU {self.imu.name}"
+        return f"<{type(self).__name__} {self.name}: {self.base} base, feet {', '.join(self.feet) or 'none'}, {sensed}>"
 
     @cached_property
     def model(self) -> pin.Model:

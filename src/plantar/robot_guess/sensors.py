@@ -42,11 +42,9 @@ def look_at(paths: Sequence[Path], robot: RobotModel | None = None) -> Sensors:
         if path.suffix.lower() in BAGS or path.is_dir():
             _look_at_bag(path, sensors)
         log = open_log(path, robot)
-        for name in log.columns:
-            kind, _, rest = name.partition(".")
-            if kind in ("imu", "wrench"):
-                found = sensors.imus if kind == "imu" else sensors.wrenches
-                found.setdefault(rest.rsplit(".", 2)[0], "")
+        for kind, found in (("imu", sensors.imus), ("wrench", sensors.wrenches)):
+            for device in log.devices(kind):
+                found.setdefault(device.partition(".")[2], "")
         sensors.logs.append(log)
     return sensors
 

@@ -23,7 +23,7 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
         text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
         notes.append(Note("gyroscope_missing", "warning", text))
         return orientation, rates_from(orientation, log.period)
-    others = sorted({column[4:].rsplit(".", 2)[0] for column in log.columns if column.startswith("imu.")})
+    others = [device.removeprefix("imu.") for device in log.devices("imu")]
     if name not in others:
         valid = f"imu.{name}.orientation.w, .x, .y, .z, or angular_velocity and linear_acceleration"
         valid += f"; in the robot file imu.name as the log has it: {', '.join(others)}" if others else ""

@@ -11,7 +11,8 @@ import numpy as np
 from scipy.signal import detrend
 from scipy.spatial.transform import Rotation
 
-from plantar.contact.balance import LOADED, flat_soles, soles_in_root
+from plantar.contact.balance import flat_soles, soles_in_root
+from plantar.contact.phases import LIFTING_SHARE
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, rotation_from_quaternion
 from plantar.errors import DataError, MotionError, PlantarError
 from plantar.logs.motion_log import MotionLog
@@ -195,7 +196,7 @@ def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan
         positions[:, place] += effort * SERVO_ANGLE / limits[joint]
     positions = low_pass(positions, 1 / RATE, SMOOTH)
     soles = flat_soles(robot, recorded.positions(robot)[0])
-    least = LOADED * robot.mass * GRAVITY
+    least = LIFTING_SHARE * robot.mass * GRAVITY
     standing = frozenset(
         name
         for name, foot in robot.feet.items()

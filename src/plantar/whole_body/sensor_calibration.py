@@ -108,8 +108,9 @@ def _worst_fault(body: Body, recordings: Sequence[Whole], calibration: Calibrati
         if clear and large and np.all(after < HARMLESS * before):
             name = WRENCH_AXES[channel]
             text = (
-                f"{name} of the wrench sensors contradicts Newton's law as recorded: the CAD misses the ground's "
-                f"{name} by {before[channel]:.3g}, and by {after[channel]:.3g} {text}"
+                f"{name} of the wrench sensors contradicts Newton's law as recorded: the URDF's masses miss it by "
+                f"{before[channel]:.3g} {'N' if name.startswith('force') else 'N.m'} rms, and by "
+                f"{after[channel]:.3g} {text}"
             )
             code = "wrench_crosstalk" if shares else "wrench_polarity"
             found.append(_Fault(code, text, changes, float(np.log(after / before).sum())))
@@ -151,7 +152,7 @@ def _crosstalks(
                 change[force, torque] = -share
                 sensors[foot] = change @ calibration.sensor(foot)
             said = ", ".join(f"{foot} {share:.2g}" for foot, share in zip(feet, shares, strict=True))
-            text = f"less {said} N per N.m of {WRENCH_AXES[torque]}: crosstalk; calibrate the sensors"
+            text = f"without {said} N per N.m of {WRENCH_AXES[torque]}: crosstalk; calibrate the sensors"
             yield force, text, sensors, True
 
 

@@ -54,13 +54,13 @@ def test_thinned_lines_keep_their_shape_and_their_bound() -> None:
     angle = np.linspace(0, 40 * np.pi, 50_000)
     x, y = 100 * np.cos(angle), 100 * np.sin(angle)
     x[20_000:20_010] = np.nan
-    ((few_x, few_y),) = thinned([(x, y)], 900)
+    few_x, few_y = thinned(x, y, 900)
     assert 300 < len(few_x) <= 900
     known = np.isfinite(few_x)
     assert np.count_nonzero(~known) == 1, "one gap stays one gap"
     assert np.hypot(few_x, few_y)[known] == pytest.approx(100.0)
     assert np.nanmin(few_x) < -95
-    (same,) = thinned([(x[::4777], y[::4777])], 900)
+    same = thinned(x[::4777], y[::4777], 900)
     assert len(same[0]) == len(x[::4777])
 
 
@@ -68,7 +68,7 @@ def test_level_and_upright_lines_keep_the_points_of_each_square() -> None:
     """Of four points in each square of half a pixel one is left, whichever way the line goes."""
     goes, stays = 0.5 * np.repeat(np.arange(20.0), 4), np.full(80, 3.0)
     for x, y in ((goes, stays), (stays, goes), (goes, goes)):
-        ((left, right),) = thinned([(x, y)], 100)
+        left, right = thinned(x, y, 100)
         np.testing.assert_array_equal([left, right], [x[::4], y[::4]])
 
 

@@ -87,11 +87,6 @@ def _remark(kind: NoteKind) -> str:
     return f"{kind.text}{more}"
 
 
-def number(value: float | None, digits: int = 4) -> str:
-    """A number to so many significant digits, or a dash."""
-    return "–" if value is None else f"{value:.{digits}g}"
-
-
 def _numeric(cell: str) -> bool:
     """Whether a cell is numbers and their units, not a sentence that begins with a number."""
-    return not cell or (cell[0] in "0123456789-+–±." and not WORD.search(cell))
+    return not cell or (cell[0] in "0123456789-−+–±." and not WORD.search(cell))

@@ -37,7 +37,7 @@ def run(
     if json:
         print_json(**summary.to_dict())
     elif not quiet:
-        print_alarms(summary)
+        print_summary(summary)
         print(store.path(PAGE))
 
 
@@ -49,14 +49,16 @@ def write_report(store: Store, false_alarms: float = FALSE_ALARMS) -> FleetSumma
     return summary
 
 
-def print_alarms(summary: FleetSummary) -> None:
-    """The alarms on the terminal, the latest first: at most SCREENFUL of them."""
+def print_summary(summary: FleetSummary) -> None:
+    """Alarms, the latest first, then kinds of failures with one of each: at most SCREENFUL lines of either."""
     screen = console()
     for alarm in summary.alarms[:SCREENFUL]:
         style = "dim" if alarm.kind == "outlier" else "yellow"
         screen.print(f"[{style}]{alarm.kind}: {escape(alarm.text)}[/]")
     if len(summary.alarms) > SCREENFUL:
         screen.print(f"[dim]and {len(summary.alarms) - SCREENFUL} more alarms: see {PAGE}[/]")
+    for reason in summary.failures[:SCREENFUL]:
+        screen.print(f"[red]failed[/], {reason.count} like this: {escape(reason.example)}")
 
 
 def _last_run(store: Store) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from typer import Argument, BadParameter, Option
 
 from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
-from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
+from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_summary, write_report
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.files import refuse_file
 from plantar.fleet.cluster import connected, dashboard, seen_by_workers
@@ -79,7 +79,7 @@ def run(
     if json:
         print(said, end="")
     elif not quiet:
-        print_alarms(summary)
+        print_summary(summary)
         print(store.path(PAGE))
         print(counts(outcome))
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
-from plantar.results.dynamics import DynamicsResult
+from plantar.cli.console.terminal import VERDICT_STYLE, print_notes, table
+from plantar.results.dynamics import ONE_OF_MANY, DynamicsResult
+from plantar.results.numbers import number
 
 LINK_COLUMNS = ("m", "mx", "my", "mz")
 
@@ -21,6 +22,7 @@ def print_inertia(out: Console, result: DynamicsResult) -> None:
     ]
     columns = ("link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]")
     out.print(table(f"Inertial parameters of {result.robot}: {result.mass:.2f} kg", columns, cells))
+    out.print(ONE_OF_MANY)
     _print_rest(out, result)
 
 

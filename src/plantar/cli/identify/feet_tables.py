@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.cli.console.terminal import VERDICT_STYLE, print_notes, table
 from plantar.notes import listing
 from plantar.pages import on_feet
 from plantar.results.feet import FeetResult, Parameter, ValidationRow, Verdict
 from plantar.results.feet_text import over_all_motions
+from plantar.results.numbers import MISSING, number
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -60,7 +61,7 @@ def parameter_table(result: FeetResult, *, narrow: bool) -> object:
 
 
 def _parameter_cells(row: Parameter) -> tuple[str, ...]:
-    interval = f"{row.interval95[0]:.5g} to {row.interval95[1]:.5g}" if row.interval95 else "–"
+    interval = " to ".join(number(bound, 5) for bound in row.interval95) if row.interval95 else MISSING
     return (row.foot, row.axis, row.name, number(row.value, 5), row.unit, interval, number(row.std, 3),
             number(row.relative_std_percent, 2), row.verdict)  # fmt: skip
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.contact.reasons import TIPPING
-from plantar.conventions import Array
+from plantar.conventions import ROUNDING, Array
 from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.feet.exclusion.outliers import WORTH
 from plantar.feet.fit.hidden_memory import has_memory
@@ -23,6 +23,7 @@ from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.model_columns import model_columns
 from plantar.feet.regression.regression_data import beside, blocks_of, recordings_of
 from plantar.feet.regression.tangent import Tangent
+from plantar.model_selection.initial_state import TRIED
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.signals.mean_changes import mean_changes
@@ -32,8 +33,6 @@ BESIDE, BRIEF = 1.0, 0.3  # s before and after a moment, over which means are co
 FAR = 8.0  # times the usual difference of two such means
 EXPLAINS = 0.5  # of the squares that spring and damper leave of the recording
 NEARLY_ALL = 0.95  # likewise, of a sensor that is loose: the turns of a memory are not as sharp
-STATES = np.linspace(-1.0, 1.0, 21)  # of a memory at the start of a log
-ROUNDING = 1e-12  # of a column's squares: what pieces leave of it
 CODE = "zero_jump"
 
 
@@ -90,12 +89,12 @@ def _starts(block: Block, recordings: Sequence[Recording], fit: AxisFit, left: M
     start, rows = fit.initial_states.get(recording.name), recording.rows(fit.foot)
     if start is None:
         return False
-    for state in STATES:
+    for state in TRIED:
         at, up, down = (
             model_columns(
                 recording, fit.foot, fit.axis, fit, np.full(len(start), np.clip(state + by, -1.0, 1.0))
             )[rows]
-            for by in (0.0, STATES[1] - STATES[0], STATES[0] - STATES[1])
+            for by in (0.0, TRIED[1] - TRIED[0], TRIED[0] - TRIED[1])
         )
         moved = ((up - down) @ fit.values)[:, None]
         started = beside(replace(block, regressor=at, noise=None), moved)

@@ -20,7 +20,7 @@ from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_blocks
 from plantar.estimation.errors_in_variables import NORMAL
 from plantar.faults.air_readings import TORQUE_OFF
-from plantar.feet.exclusion.moved_edges import moved_inwards
+from plantar.feet.exclusion.moved_edges import FEWEST, moved_inwards
 from plantar.feet.recording import Recording, filtered
 from plantar.feet.regression.regression_data import blocks_of
 from plantar.feet.settings import FeetSettings
@@ -42,7 +42,6 @@ VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
 # m, times the weight: the torque's zero; a sensor that is farther off is told to be zeroed. A small foot's is made for
 # smaller torques: a share of half the sole's width, or the middle of the sole would count as its edge.
 LARGEST_ZERO, ZERO_SHARE = TORQUE_OFF, 0.125
-FEWEST = 0.04  # s of sure lean, for the edge to be known
 # By how much an outline that is a guess may be too large [m, and of half the sole's width]: a sole tips before it seems
 # to be at its edge.
 GUESSED, GUESSED_SHARE = 0.015, 0.15

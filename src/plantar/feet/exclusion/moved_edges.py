@@ -10,7 +10,7 @@ from plantar.feet.recording import Recording
 from plantar.signals.medians import median
 from plantar.signals.segments import steps_in
 
-FEWEST = 0.04  # s beyond an edge, in all: less may be a shock
+FEWEST = 0.04  # s beyond an edge, in all: less may be a shock, and the edge is not known
 SHELLS = 40  # of equal width, into which the angles are sorted
 FILLED = 5  # samples, for a shell's median to be one
 STOPPED = 0.25  # of the usual change of the torque with the angle: over an edge there is next to none

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.contact.deflection import BushState, onto_sole
+from plantar.contact.phases import quick_part
 from plantar.contact.slip_indicator import SLIP_CUTOFF, usual_deviation
 from plantar.conventions import Array, Mask, cross, rotated
 from plantar.estimation.errors_in_variables import NORMAL
@@ -24,7 +25,6 @@ from plantar.signals.segments import complete, steps_in
 
 DRIFT_RATE = 50.0  # Hz, enough for the drift
 GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
-SHAKEN = 20.0  # Hz: no part of a robot that stands is moved on purpose above it
 LAG = 0.05  # s, in which neither drift nor slide changes much
 SLOPE_TIME = 1.0  # s, in which the drift's slope changes by more than noise
 LEAST_NOISE = 0.0002  # m/s
@@ -59,7 +59,7 @@ def sole_motion(
         return None
     period = recording.period
     push = np.nan_to_num(low_pass(acceleration, period, SLIP_CUTOFF))
-    shaking = np.nan_to_num(acceleration - low_pass(acceleration, period, min(SHAKEN, 0.2 / period)))
+    shaking = quick_part(acceleration, period)
     noise_of_attitude = _attitude_noise(orientation, rates, period)
     moved, stands = {}, {}
     for foot, bush in recording.bushes.items():

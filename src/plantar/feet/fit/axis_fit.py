@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plantar.contact.stances import LONGEST_STANCE
 from plantar.conventions import Axis
 from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.estimation.least_squares import factor_of
@@ -28,7 +29,6 @@ from plantar.models import MODELS, BushModel, KelvinVoigt
 # Of the torque's variance by spring and damper: below it no model of the bush will help.
 LEAST_EXPLAINED = 0.5
 FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
-SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 # A short stance begins with an unknown state and offset and ends before it has gone far: of memories
 # it tells the simplest, and only where that one explains much.
 CANDIDATES_IN_STANCES = ("kelvin_voigt", "elastoplastic")
@@ -178,7 +178,7 @@ def _remembers(data_sets: Sequence[DataSet]) -> bool:
         for data_set in data_sets
         for run in data_set.motion.runs
     )
-    return bool(stances) and seconds / len(stances) > SHORT_STANCE
+    return bool(stances) and seconds / len(stances) > LONGEST_STANCE
 
 
 def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None, reason: str) -> AxisFit:

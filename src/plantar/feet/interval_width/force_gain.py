@@ -31,8 +31,7 @@ REWEIGHTED = 5  # rounds
 LOADED = 0.03  # of the weight, by which a recording's sums are off beside gains that suit the others
 STEADY = 0.02  # of the weight: scatter of a recording's sums while nobody holds the robot
 ALIKE = 10.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
-LEAST_GAIN = 1e-4  # share: a sensor without any gain error, and a deviation that stays finite
-SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
+LEAST_GAIN = 1e-4  # share: of sensors without any gain error, for deviations and priors that stay finite
 LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
 SAFE = 0.5  # deviations by which a share may be larger than it looks
 HALVINGS = 50  # of an interval: what is left of it is rounding
@@ -103,7 +102,7 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
         return {}
     own, other = robot.uncertainty.wrench_gain, float(np.hypot(_mass_deviation(robot), LEAST_DEVIATION))
     apart = np.eye(len(robot.feet)) - 1 / len(robot.feet)
-    inverse, covariance = _inverse_gains(windows, apart / max(ALIKE * own, SURELY_ALIKE) ** 2)
+    inverse, covariance = _inverse_gains(windows, apart / max(ALIKE * own, LEAST_GAIN) ** 2)
     stds = np.sqrt(np.diag(apart @ covariance @ apart))
     told_apart = np.abs(apart @ inverse) > NORMAL95 * stds
     together = 1 / float(inverse.mean()) - 1

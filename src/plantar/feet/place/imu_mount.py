@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plantar.contact.sole_height import STEP
 from plantar.conventions import Array, Mask
 from plantar.estimation import Block, LinearFit
 from plantar.feet.recording import Recording
@@ -17,7 +18,6 @@ from plantar.feet.regression.model_columns import memory_path, own_torque, turn_
 from plantar.feet.regression.tangent import Tangent
 from plantar.models import BESIDE, KelvinVoigt
 
-TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
 UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
 
 
@@ -75,13 +75,13 @@ def imu_columns(recording: Recording, fit: AxisFit) -> Array:
     linear = np.einsum("nrk,r->nk", effects, fit.values[: len(BESIDE)])
     if isinstance(fit.model, KelvinVoigt):
         return np.asarray(linear)
-    path, steps = memory_path(recording, fit), TURN_STEP * np.moveaxis(effects, 0, 2)
+    path, steps = memory_path(recording, fit), STEP * np.moveaxis(effects, 0, 2)
     turned = [
         replace(path, deflection=path.deflection + angle, rate=path.rate + rate)
         for angle, rate in np.concatenate([steps, -steps], axis=1).swapaxes(0, 1)
     ]
     own = own_torque(recording, fit, turned, fit.shape[None, :])
-    return np.asarray(linear + (own[:, :3] - own[:, 3:]) / (2 * TURN_STEP))
+    return np.asarray(linear + (own[:, :3] - own[:, 3:]) / (2 * STEP))
 
 
 def that_show(blocks: Sequence[Block], columns: Sequence[Array], spreads: Array) -> Mask:

@@ -48,13 +48,12 @@ def _own_columns(
     """A model's columns beside the linear two, through the fit's filter, (N, e, p·b): see `own_torque`."""
     if initial_states is None:
         initial_states = fit.initial_states.get(recording.name)
-    starts = [
-        np.array([fit.model.initial_states(path, shape) for shape in shapes])
-        if initial_states is None or len(initial_states) != len(path.runs)
-        else np.tile(initial_states, (len(shapes), 1))
-        for path in paths
-    ]
-    columns = np.concatenate(fit.model.basis_columns(paths, shapes, starts), axis=2)
+    each = []
+    for path in paths:
+        known = initial_states is not None and len(initial_states) == len(path.runs)
+        starts = [initial_states if known else fit.model.initial_states(path, shape) for shape in shapes]
+        each.append(fit.model.basis_columns(path, shapes, np.array(starts)))
+    columns = np.concatenate(each, axis=2)
     columns[~np.isfinite(paths[0].deflection + paths[0].rate)] = np.nan
     return low_pass(columns, recording.period, recording.cutoff, SHORTEST_FITTED_RUN)
 

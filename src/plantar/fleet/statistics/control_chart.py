@@ -15,8 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtri, stdtr
 
-from plantar.conventions import Array
-from plantar.fleet.statistics.trend import ROUNDING
+from plantar.conventions import ROUNDING, Array
 
 BASELINE: Final = 4  # days that are compared with none: with fewer, Student's t has tails that hide any step
 ALLOWANCE: Final = 0.5  # deviations of a day: half of the smallest step that is worth finding quickly

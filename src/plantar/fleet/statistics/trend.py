@@ -8,9 +8,8 @@ from typing import Final
 import numpy as np
 from scipy.special import stdtr, stdtrit
 
-from plantar.conventions import MONTH, Array
+from plantar.conventions import MONTH, ROUNDING, Array
 
-ROUNDING: Final = 1e-12  # of the values: what differs by less is the same
 FEWEST: Final = 4  # days through which a line is laid: with three, one day decides
 
 

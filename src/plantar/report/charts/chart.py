@@ -171,17 +171,13 @@ def line(x: Array, y: Array, kind: str) -> Path:
     return Path(kind, "".join(np.where(begins, "M%g %g", "l%g %g").tolist()) % tuple(steps.ravel().tolist()))
 
 
-def thinned(
-    lines: Sequence[tuple[Array, Array]], most: int, finest: float = 0.5
-) -> list[tuple[Array, Array]]:
-    """Lines in pixels, (n,) each, without points that lie in the square of the one before: squares of `finest` pixels,
-    or larger ones until `most` points are left in all. Gaps (NaN) stay gaps."""
-    side = finest
-    while True:
-        kept = [(x[keep], y[keep]) for x, y in lines for keep in [_moves(x, y, side)]]
-        if sum(len(x) for x, _ in kept) <= most or side > 1e3:
-            return kept
+def thinned(x: Array, y: Array, most: int) -> tuple[Array, Array]:
+    """A line in pixels, (n,) each, without points that lie in the square of the one before: squares of half a pixel,
+    or larger ones until `most` points are left. Gaps (NaN) stay gaps."""
+    side = 0.5
+    while (keep := _moves(x, y, side)).sum() > most and side <= 1e3:
         side *= 1.5
+    return x[keep], y[keep]
 
 
 def _moves(x: Array, y: Array, side: float) -> Array:

@@ -42,9 +42,8 @@ def _chart(result: FeetResult, tracks: Sequence[Track], axis: Axis) -> Chart | N
     left, top, width, height = PLACE
     x, y = Scale(*ends(angle), 0.0, width), Scale(*ends(measured), height, 0.0)
     marks = [
-        line(px, py, kind)
+        line(*thinned(x(angle), y(values), MOST_POINTS), kind)
         for values, kind in ((model, "model many"), (measured, "measured many"))
-        for px, py in thinned([(x(angle), y(values))], MOST_POINTS)
     ]
     legend = [("measured", "measured"), ("model", "model")]
     slope, name = _straight(result, foot, axis)

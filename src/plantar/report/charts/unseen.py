@@ -47,9 +47,8 @@ def _chart(result: FeetResult, tracks: Sequence[Track], axis: Axis) -> Chart:
         top = TOP + place * (ROW + ROOM)
         model = np.where(track.used, track.values[f"{axis}.predicted"], np.nan)
         marks = [
-            line(px, py, kind)
+            line(*thinned(x(time), y(values), MOST_POINTS), kind)
             for values, kind in ((measured, "measured"), (model, "model"))
-            for px, py in thinned([(x(time), y(values))], MOST_POINTS)
         ]
         last = place == len(drawn) - 1
         where = (LEFT, top, ACROSS, ROW)
