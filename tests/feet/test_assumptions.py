@@ -26,6 +26,7 @@ from plantar.results.feet_rows import Assumption
 from plantar.results.feet_text import NOT_FOUND, PRINTED_IN, assumption_cells
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+from plantar.sensors.moments.bent_joints import JointBending
 
 ASIDE = np.array(
     [0.004, -0.005, 0.006]
@@ -91,7 +92,10 @@ def test_what_recordings_differ_by_is_as_sure_as_its_interval_is_narrow(usual: R
     """Of 95 % from 1 to 5 per cent: a normal deviation is half of that over 1.96."""
     timing, still = SimpleNamespace(measured=False), SimpleNamespace(angles=(0.0, 0.0, 0.0))
     ready = cast(
-        "PreparedLogs", SimpleNamespace(gain_errors={}, sensor_delay=timing, robot=usual, imu_turn=still)
+        "PreparedLogs",
+        SimpleNamespace(
+            gain_errors={}, sensor_delay=timing, robot=usual, imu_turn=still, bending=JointBending.told(usual)
+        ),
     )
     for apart, expected in (
         (Apart(0.02, 3, (0.01, 0.05)), (0.02, 0.04 / 3.92)),
