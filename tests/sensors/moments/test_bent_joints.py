@@ -51,7 +51,7 @@ def sweep(twin: RobotModel) -> MotionLog:
 
 def found(twin: RobotModel, log: MotionLog, *, steps: bool = False) -> JointBending:
     [residual] = newton_euler_residuals(twin, log)
-    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING))
+    return joint_bending(twin, fit_moments(twin, [residual], [log.name] if steps else (), BENDING), steps)
 
 
 def of(twin: RobotModel, bending: JointBending, name: str) -> tuple[float, float]:
@@ -124,7 +124,7 @@ def test_what_the_robot_file_allows_for_is_all_that_is_known_without_moments(
 ) -> None:
     """And more than what is known with them."""
     unsure = replace(twin, uncertainty=replace(twin.uncertainty, joint_compliance=COMPLIANCE))
-    alone = joint_bending(unsure, None)
+    alone = joint_bending(unsure, None, steps=False)
     assert not alone.found
     assert np.allclose(alone.covariance, COMPLIANCE**2)
     assert alone.mean is None
@@ -171,10 +171,11 @@ def test_torques_of_a_foot_turn_the_joints_of_its_own_leg(twin: RobotModel, swee
 
 @pytest.mark.parametrize(("mean", "some"), [(0.0, False), (5e-5, True)])
 def test_joints_of_which_one_alone_seems_to_bend_are_stiff(twin: RobotModel, mean: float, some: bool) -> None:
-    """As where an encoder slips: five deviations in one joint, and none in all together."""
+    """As where an encoder slips: five deviations in one joint, and none in all together. Standing shows less."""
     columns, count = compliance_columns(twin), len(prior_deviations(twin))
     values, std = np.zeros(count), np.full(count, 1e-5)
     values[columns], std[columns.start + 2] = mean, 5e-5
     values[columns.start + 2] += 2.5e-4
     fit = MomentFit(values, [Part(np.diag(std**2), 39.0)])
-    assert joint_bending(twin, fit).found == some
+    assert joint_bending(twin, fit, steps=True).found == some
+    assert not joint_bending(twin, fit, steps=False).found

@@ -20,8 +20,12 @@ from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
 from plantar.sensors.moments.sensor_errors import compliance_columns
 
 BENT = "joints_bend"
-# rad, with the robot's weight at a metre: less passes for none. A URDF's legs that are a little too short do as much.
+# rad, with the robot's weight at a metre: deviation of what stiff joints seem to bend by. A URDF's legs that are a
+# little too short do as much.
 USUAL = 0.004
+# Likewise of a robot that only stands, whose horizontal forces are small: slow tilts of an exact one seem to bend its
+# joints by 0.025, those of one with a wrong URDF by up to 0.045.
+USUAL_STANDING = 0.012
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
 
@@ -55,8 +59,9 @@ class JointBending(NamedTuple):
         return cls(np.zeros(joints), np.full((joints, joints), variance))
 
 
-def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
-    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs.
+def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> JointBending:
+    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs; `steps`: whether
+    feet step in some logs.
 
     Compliances are as large as each other within their own size, which the moments tell; the robot file's, where that
     is larger.
@@ -66,23 +71,23 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
         return told
     columns, legs = compliance_columns(robot), leg_joints(robot)
     values, count = fit.values[columns], len(legs)
+    load, alike = robot.mass * GRAVITY, np.ones((count, count)) + np.eye(count)
     parts = [Part(one.covariance[columns, columns], one.freedom) for one in fit.parts]
+    parts.append(Part(((USUAL if steps else USUAL_STANDING) / load) ** 2 * alike, MOST_FREEDOM))
     covariance = np.sum([one.covariance for one in parts], axis=0)
     weights = np.linalg.solve(covariance, np.ones(count))
     weights /= weights.sum()
     mean, std = float(weights @ values), float(np.sqrt(weights @ covariance @ weights))
-    load, alike = robot.mass * GRAVITY, np.ones((count, count)) + np.eye(count)
 
     def unlikely(size: float) -> float:
         total = covariance + size**2 * alike
         return float(np.linalg.slogdet(total)[1] + values @ np.linalg.solve(total, values))
 
     size = robot.uncertainty.joint_compliance
-    unsure = [*parts, Part((USUAL / load) ** 2 * alike, MOST_FREEDOM)]
-    deviations = np.sqrt(np.sum([np.diag(one.covariance) for one in unsure], axis=0))
-    gives_way = mean > 0 and bool((values > -SHOWN * deviations).all())  # no joint bends against its load
+    # No joint bends against its load.
+    gives_way = mean > 0 and bool((values > -SHOWN * np.sqrt(np.diag(covariance))).all())
     # Of all joints together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
-    own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in unsure]
+    own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in parts]
     if gives_way and is_wrong(np.array([mean]), own, [0]):
         size = max(size, min(SIZES / load, key=unlikely))
     if not size:
