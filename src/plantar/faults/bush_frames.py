@@ -41,8 +41,8 @@ def check_bush_axes(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         leftward = 1 if next(iter(apart)) == "right" else -1  # from the first foot to the second
         if all(leftward * y < -abs(x) for x, y, _ in apart.values()):
             text = (
-                "robot file, feet: left stands on the right of right (valid: exchange the two names; or, where x of "
-                "their bushes points to the heels, turn it to the toes)"
+                "robot file, feet: the foot 'left' stands to the right of the foot 'right' (valid: exchange the two "
+                "names; or, where x of their bushes points to the heels, turn it to the toes)"
             )
             yield Finding("feet_exchanged", text)
     for name, (x, y, _) in apart.items():
