@@ -179,3 +179,13 @@ def test_joints_of_which_one_alone_seems_to_bend_are_stiff(twin: RobotModel, mea
     fit = MomentFit(values, [Part(np.diag(std**2), 39.0)])
     assert joint_bending(twin, fit, steps=True).found == some
     assert not joint_bending(twin, fit, steps=False).found
+
+
+@pytest.mark.parametrize(("std", "some"), [(3e-5, True), (1e-4, False)])
+def test_a_mean_that_is_hardly_known_tells_nothing(twin: RobotModel, std: float, some: bool) -> None:
+    """Though it is ten deviations from nothing: of all joints together 1.2e-5 and 4e-5 rad/(N.m)."""
+    columns, count = compliance_columns(twin), len(prior_deviations(twin))
+    values = np.zeros(count)
+    values[columns] = 4 * std
+    fit = MomentFit(values, [Part(np.diag(np.full(count, std**2)), 39.0)])
+    assert joint_bending(twin, fit, steps=True).found == some

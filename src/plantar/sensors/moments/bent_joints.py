@@ -88,7 +88,9 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> Join
     gives_way = mean > 0 and bool((values > -SHOWN * np.sqrt(np.diag(covariance))).all())
     # Of all joints together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
     own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in parts]
-    if gives_way and is_wrong(np.array([mean]), own, [0]):
+    # Logs that tell it less well follow what else is wrong: one short motion of a stiff robot seems to bend its knees.
+    known = sum(float(one.covariance[0, 0]) for one in own[:-1]) < (USUAL_STANDING / load) ** 2
+    if gives_way and known and is_wrong(np.array([mean]), own, [0]):
         size = max(size, min(SIZES / load, key=unlikely))
     if not size:
         return told._replace(mean=mean, std=std)
