@@ -105,9 +105,8 @@ def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Arra
     if not robot.feet:
         raise DataError("has no feet, so there is no balance to measure", path=robot.path)
     poses = dict(soles) if soles is not None else flat_soles(robot, log.positions(robot)[0])
-    least = (
-        LIFTING_SHARE * robot.mass * GRAVITY
-    )  # with less a foot is in the air, and has no centre of pressure
+    # With less a foot is in the air, and has no centre of pressure.
+    least = LIFTING_SHARE * robot.mass * GRAVITY
     total, carrying = np.zeros((len(log), 6)), {}
     for name, foot in robot.feet.items():
         if name not in poses:

@@ -12,7 +12,7 @@ from typing import cast
 import numpy as np
 
 from plantar.contact.deflection import foot_motions
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, ROUNDING, Array
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.place.bush_place import centre_columns
 from plantar.feet.recording import Recording, within_stances
@@ -26,7 +26,6 @@ from plantar.signals.orientation import attitude
 NAME = "joint compliance"
 # rad/(N.m), over which a memory's slope is taken: joints bend by a small part of what makes it slip.
 LITTLE = 1e-6
-NOTHING = 1e-12  # of the largest variance: rounding
 
 
 def joint_compliance_causes(robot: RobotModel, tangent: Tangent, bending: JointBending) -> list[Cause]:
@@ -37,7 +36,7 @@ def joint_compliance_causes(robot: RobotModel, tangent: Tangent, bending: JointB
     if not bending.covariance.any():
         return []
     variances, directions = np.linalg.eigh(bending.covariance)
-    open_ones = variances > NOTHING * variances[-1]
+    open_ones = variances > ROUNDING * variances[-1]
     fit, ways = tangent.fit, np.sqrt(variances[open_ones]) * directions[:, open_ones]
     column, size = ROTATIONAL_AXES.index(fit.axis), tangent.blocks[0].regressor.shape[1]
 

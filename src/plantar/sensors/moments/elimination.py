@@ -24,9 +24,8 @@ def beside(products: Sequence[Array], weights: Array, deviations: Array) -> Besi
     coefficients of these columns are drawn towards nothing with `deviations` (others,)."""
     kept = len(products[0]) - len(deviations)
     total: Array = np.zeros_like(products[0])
-    for part, weight in zip(
-        products, weights, strict=True
-    ):  # one by one: those of all logs take tens of megabytes
+    # One by one: those of all logs together take tens of megabytes.
+    for part, weight in zip(products, weights, strict=True):
         total += weight * part
     known = np.diag(deviations**-2.0)
     share = np.linalg.solve(_positive(total[kept:, kept:]) + known, total[kept:, :kept])

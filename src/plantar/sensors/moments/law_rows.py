@@ -60,10 +60,11 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     zeros = [-channel for one in read for channel in one.transfer.transpose(2, 0, 1)]
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
-    by_bends = by_bending(robot, residual, motion, leg_joints(robot))
-    if centre is not None:  # moments alone show no bending legs beside torques that read too much
-        by_bends = [np.zeros_like(slope) for slope in by_bends]
-    by_motion = [*-by_mount, *-np.array(by_bends), *residual.rates, residual.by_encoders, -by_gyroscope]
+    legs = leg_joints(robot)
+    by_bends = np.zeros((len(legs), len(motion.positions), 6))
+    if centre is None:  # moments alone show no bending legs beside torques that read too much
+        by_bends -= by_bending(robot, residual, motion, legs)
+    by_motion = [*-by_mount, *by_bends, *residual.rates, residual.by_encoders, -by_gyroscope]
     # Some at a time and in single precision: all together would be the largest array of any log.
     errors = link_errors(robot)
     by_links = [

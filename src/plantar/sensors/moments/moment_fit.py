@@ -29,9 +29,7 @@ STRAINED = 2.0  # deviations of its prior and its own, beyond which a gain is of
 # Share of a torque, which landings behind filters of unlike sensors make of it in every step of a simulated walk: all
 # parts of a walk agree in it.
 LANDINGS = 0.01
-LANDINGS_BEND = (
-    0.006  # rad, likewise: how far they seem to bend each joint with the robot's weight at a metre
-)
+LANDINGS_BEND = 0.006  # rad, likewise: how far they seem to bend each joint with the robot's weight at 1 m
 CHANCE = 0.01  # that sensors without a fault are called wrong, by deviations that are on the safe side
 
 

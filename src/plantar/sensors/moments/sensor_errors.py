@@ -43,9 +43,7 @@ def prior_deviations(robot: RobotModel, gains: float = LOOSE, bending: float = B
 
 def compliance_columns(robot: RobotModel) -> slice:
     """The columns of the joints' compliances, one for each of `leg_joints`."""
-    start = (
-        len(robot.feet) * (2 + len(sensor_errors(robot)[1])) + 3
-    )  # behind gains, sensors and the IMU's turn
+    start = len(robot.feet) * (2 + len(sensor_errors(robot)[1])) + 3  # behind gains, sensors, the IMU's turn
     return slice(start, start + len(leg_joints(robot)))
 
 
