@@ -25,7 +25,7 @@ SOLE, LIFTED_SOLE = (0.05, 1e-3), (0.02, 4e-4)
 SERVO = 20.0  # times weight times height [N·m/rad]
 SERVO_DAMPING = 0.02  # s, over the stiffness
 ROTOR = 1e-4  # s², inertia over the stiffness
-# Stiff beside any rubber: solref and solimp. Light soles sink more: stiffer under these, in smaller steps.
+# Stiff beside any rubber: solref and solimp. Light soles sink more: stiffer under these.
 FLOOR, HARD_FLOOR, PARTS = (-2.5e5, -1e3), (-5e5, -1.4e3), 2
 HARD = 0.999
 SMALLEST = 1e-6  # kg·m²
@@ -58,7 +58,7 @@ def play(
     robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, Rubber], leads: Leads | None = None
 ) -> Motion:
     """Play `targets` (n, joints) at 1000 Hz from the root's pose `start` (7,) x y z, w x y z."""
-    model, parts = _model(robot, rubber, lifted=leads is not None), 1 if leads is None else PARTS
+    model = _model(robot, rubber, lifted=leads is not None)
     lead = None if leads is None else leads(model)
     data = mujoco.MjData(model)
     names = list(robot.joint_names)
@@ -75,7 +75,7 @@ def play(
             data.ctrl[:] += lead(max(row, 0), data)
         if row >= 0:
             joints[row] = data.qpos[places]
-        for part in range(parts):
+        for part in range(PARTS):
             for each in sliding:
                 each.push(data)
             mujoco.mj_step(model, data)  # sensors and frames are those of the state before the step
@@ -124,13 +124,9 @@ def _model(robot: RobotModel, rubber: Mapping[str, Rubber], *, lifted: bool) -> 
     servo = SERVO * weight_times_height(robot)
     spec = mujoco.MjSpec.from_string(_bare(robot.urdf))
     spec.compiler.fusestatic, spec.compiler.balanceinertia = False, True
-    spec.option.timestep = STEP / PARTS if lifted else STEP
-    if (
-        lifted
-    ):  # what an implicit step integrates is not the acceleration that sensors read in it, as legs swing
-        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
-    else:
-        spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.timestep = STEP / PARTS
+    # What an implicit step integrates is not the acceleration that sensors read in it, and breaks Newton's law.
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     spec.worldbody.first_body().add_freejoint()
     for joint in spec.joints:
         if joint.type == mujoco.mjtJoint.mjJNT_FREE:

@@ -36,4 +36,22 @@ def test_products_that_noise_taken_off_makes_negative_say_nothing_there() -> Non
     products = np.array([[9.0, 1.0, 2.0], [1.0, -0.5, 0.0], [2.0, 0.0, 4.0]])
     deviations = np.array([0.1, 10.0])
     np.testing.assert_allclose(information(products, deviations), np.diag([100.0, 4.01]), atol=1e-12)
-    np.testing.assert_allclose(coefficients(products, deviations), [0.01, 2.0 / 4.01])
+    np.testing.assert_allclose(coefficients(products, deviations), [0.0, 2.0 / 4.01], atol=1e-15)
+
+
+def test_what_noise_leaves_of_columns_of_other_units_is_not_magnified() -> None:
+    """Two columns whose difference is less than nothing: without it, their mean has what the sum of both says."""
+    units = np.array([1.0, 1e3, 1e-3])
+    products = np.array([[9.0, 2.5, 1.5], [2.5, 1.0, 1.02], [1.5, 1.02, 1.0]]) * np.outer(units, units)
+    found = coefficients(products, 1e3 / units[1:]) * units[1:]
+    np.testing.assert_allclose(found, 2 * [4.0 / (2 * 2.02)], rtol=1e-5)
+
+
+def test_columns_of_nothing_leave_the_others_as_they_are(columns: Array) -> None:
+    products, deviations = (columns.mT @ columns).sum(axis=0), np.ones(8)
+    products[3] = products[:, 3] = 0.0
+    others = [0, 1, 2, *range(4, 9)]
+    found = coefficients(products, deviations)
+    assert found[2] == pytest.approx(0.0, abs=1e-9)
+    rest = coefficients(products[np.ix_(others, others)], deviations[1:])
+    np.testing.assert_allclose(np.delete(found, 2), rest, rtol=1e-9)

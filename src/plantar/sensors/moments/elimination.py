@@ -28,7 +28,8 @@ def beside(products: Sequence[Array], weights: Array, deviations: Array) -> Besi
     for part, weight in zip(products, weights, strict=True):
         total += weight * part
     known = np.diag(deviations**-2.0)
-    share = np.linalg.solve(_positive(total[kept:, kept:]) + known, total[kept:, :kept])
+    others, with_kept = _positive(total[kept:, kept:], total[kept:, :kept], deviations)
+    share = np.linalg.solve(others + known, with_kept)
     left = np.vstack([np.eye(kept), -share])
     # What the others' own priors say against a share of them belongs to all parts alike.
     alike = share.T @ known @ share / len(products)
@@ -39,18 +40,24 @@ def beside(products: Sequence[Array], weights: Array, deviations: Array) -> Besi
 def coefficients(products: Array, deviations: Array) -> Array:
     """The solution (k,) of products (k + 1, k + 1) of what is missing and its columns, drawn towards nothing with
     `deviations` (k,)."""
-    return np.asarray(np.linalg.solve(information(products, deviations), products[1:, 0]))
+    columns, with_missing = _positive(products[1:, 1:], products[1:, 0], deviations)
+    return np.asarray(np.linalg.solve(columns + np.diag(deviations**-2.0), with_missing))
 
 
 def information(products: Array, deviations: Array) -> Array:
     """What products (k + 1, k + 1) and `deviations` (k,) say of the coefficients, (k, k): inverse, their covariance."""
-    return _positive(products[1:, 1:]) + np.diag(deviations**-2.0)
+    return _positive(products[1:, 1:], products[1:, 0], deviations)[0] + np.diag(deviations**-2.0)
 
 
-def _positive(products: Array) -> Array:
-    """The nearest products (k, k) that real columns can have: noise taken off may leave less than nothing."""
-    with suppress(np.linalg.LinAlgError):  # raised where it does
+def _positive(products: Array, others: Array, deviations: Array) -> tuple[Array, Array]:
+    """The nearest products (k, k) that real columns can have, as noise taken off may leave less than nothing, and their
+    products with `others` (k, ...): nothing where nothing is left of the columns. Near is what `deviations` (k,) call
+    so: columns have units of their own."""
+    with suppress(np.linalg.LinAlgError):  # raised where less is left
         np.linalg.cholesky(products)
-        return products
-    sizes, vectors = np.linalg.eigh(products)
-    return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
+        return products, others
+    sizes, vectors = np.linalg.eigh(products * np.outer(deviations, deviations))
+    real = vectors[:, sizes > 0]
+    scaled = real / deviations[:, None]
+    kept = real.T * deviations
+    return np.asarray((scaled * sizes[sizes > 0]) @ scaled.T), np.asarray(scaled @ (kept @ others))

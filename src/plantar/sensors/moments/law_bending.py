@@ -20,22 +20,23 @@ STEP = 1e-7  # rad/(N.m), for the slope: far below what any joint bends, far abo
 
 
 def by_bending(
-    robot: RobotModel, residual: NewtonEulerResidual, motion: Motion, legs: Sequence[Sequence[int]]
+    robot: RobotModel, residual: NewtonEulerResidual, motion: Motion, legs: Sequence[Sequence[int]], quick: bool
 ) -> list[Array]:
     """How what is predicted beyond the measured changes as each group of joints of `legs` bends, (n, 6) [N, N.m per
-    rad/(N.m)]. motion: of the samples of the residual."""
+    rad/(N.m)]. motion: of the samples of the residual; quick: whether what bends is accelerated as well.
+
+    Of a standing robot it hardly is, and the torques' noise, white as it is, stays white without.
+    """
     equation = equation_of(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     torques = leg_torques(robot, motion.positions, residual.readings)
 
     def missing(bends: Array) -> Array:
-        rates = np.gradient(bends, residual.pair.period, axis=0)
-        bent = replace(
-            motion,
-            positions=motion.positions + bends,
-            velocities=motion.velocities + rates,
-            accelerations=motion.accelerations + np.gradient(rates, residual.pair.period, axis=0),
-        )
+        bent = replace(motion, positions=motion.positions + bends)
+        if quick:
+            rates = np.gradient(bends, residual.pair.period, axis=0)
+            accelerations = motion.accelerations + np.gradient(rates, residual.pair.period, axis=0)
+            bent = replace(bent, velocities=motion.velocities + rates, accelerations=accelerations)
         transfers = [equation.base_transfer(bent.positions, contact) for contact in contacts]
         predicted = equation.base_wrenches(bent, residual.parameters[None])[0]
         return np.asarray(predicted - np.sum(carried(transfers, residual.readings), axis=0))

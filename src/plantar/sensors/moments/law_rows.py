@@ -63,7 +63,7 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     legs = leg_joints(robot)
     by_bends = np.zeros((len(legs), len(motion.positions), 6))
     if centre is None:  # moments alone show no bending legs beside torques that read too much
-        by_bends -= by_bending(robot, residual, motion, legs)
+        by_bends -= by_bending(robot, residual, motion, legs, quick=steps)
     by_motion = [*-by_mount, *by_bends, *residual.rates, residual.by_encoders, -by_gyroscope]
     # Some at a time and in single precision: all together would be the largest array of any log.
     errors = link_errors(robot)
@@ -81,9 +81,11 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     for row in range(6) if centre is None else range(6)[TORQUE]:
         signals = [missing[:, row], *_in_order([one.columns(row) for one in read])]
         signals, of_sensors = [*signals, *(one[:, row] for one in slopes)], len(signals)
-        # Readings and links' accelerations. Slopes are smooth: their noise is not white, and small below BAND.
+        # Readings, joints that bend by them, and links' accelerations. Other slopes are smooth: their noise is not
+        # white, and small below BAND.
         noisy = np.zeros(len(signals), dtype=bool)
         noisy[:of_sensors] = noisy[-len(by_links) - len(zeros) : -len(zeros)] = True
+        noisy[of_sensors + len(by_mount) :][: len(legs)] = True
         slow = np.empty((len(missing), len(signals)))
         noise = np.zeros((2, 0 if steps else len(missing), len(signals)), dtype=np.float32)
         for first in range(0, len(signals), TOGETHER):
