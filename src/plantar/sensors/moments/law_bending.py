@@ -20,7 +20,11 @@ STEP = 1e-7  # rad/(N.m), for the slope: far below what any joint bends, far abo
 
 
 def by_bending(
-    robot: RobotModel, residual: NewtonEulerResidual, motion: Motion, legs: Sequence[Sequence[int]], quick: bool
+    robot: RobotModel,
+    residual: NewtonEulerResidual,
+    motion: Motion,
+    legs: Sequence[Sequence[int]],
+    quick: bool,
 ) -> list[Array]:
     """How what is predicted beyond the measured changes as each group of joints of `legs` bends, (n, 6) [N, N.m per
     rad/(N.m)]. motion: of the samples of the residual; quick: whether what bends is accelerated as well.
