@@ -10,9 +10,12 @@ import math
 import os
 import re
 from collections.abc import Collection, Mapping
+from dataclasses import fields, is_dataclass
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 NUMBER = re.compile(r"(?<![\w.])[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -46,3 +49,26 @@ def _shortened(value: Any, left_out: Collection[str]) -> Any:
     if isinstance(value, Mapping):
         return {key: _shortened(one, left_out) for key, one in value.items() if key not in left_out}
     return [_shortened(one, left_out) for one in value] if isinstance(value, list | tuple) else value
+
+
+def described(value: Any, name: str = "") -> str:
+    """Whatever holds numbers and texts, a line for each: fields and items by name, long arrays by what sums them up."""
+    if isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and value.size > 6:
+        flat = value.astype(float).ravel()
+        known = np.flatnonzero(np.isfinite(flat))
+        some = flat[known]
+        sums = [some @ np.cos(known), np.sqrt(np.mean(some**2)), some[0], some[-1]] if some.size else []
+        return f"{name} {value.shape}: {known.size}; {', '.join(f'{one:.8g}' for one in sums)}\n"
+    if isinstance(value, np.ndarray):
+        return f"{name}: {_shortened(value.tolist(), ())}\n"
+    if is_dataclass(value):
+        items = [(each.name, getattr(value, each.name)) for each in fields(value)]
+    elif hasattr(value, "_asdict"):
+        items = [*value._asdict().items()]
+    elif isinstance(value, Mapping):
+        items = [*value.items()]
+    elif isinstance(value, list | tuple):
+        items = [*enumerate(value)]
+    else:
+        return f"{name}: {_shortened(float(value) if isinstance(value, np.number) else value, ())}\n"
+    return "".join(described(one, f"{name}.{key}" if name else str(key)) for key, one in items)
