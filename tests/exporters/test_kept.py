@@ -21,9 +21,9 @@ MODELS: dict[str, Callable[[Path], Path]] = {
     "usd": lambda folder: write_usd(folder / "stage.usda"),
 }
 TARGETS = [
-    ("urdf", None), ("sdf", None), ("sdf", "sdf"), ("sdf", "old sdf"), ("drake", None), ("drake", "sdf"), ("mjcf", "mjcf"),
-    ("usd", None), ("usd", "usd"), ("mc_rtc", None), ("openhrp", None), ("choreonoid", None), ("kinetics_observer", None),
-    ("randomization", None), ("yaml", None),
+    ("urdf", None), ("sdf", None), ("sdf", "sdf"), ("sdf", "old sdf"), ("drake", None), ("drake", "sdf"),
+    ("mjcf", "mjcf"), ("usd", None), ("usd", "usd"), ("mc_rtc", None), ("openhrp", None), ("choreonoid", None),
+    ("kinetics_observer", None), ("randomization", None), ("yaml", None),
 ]  # fmt: skip
 CONTACTS = [
     ("bullet-contact", None), ("drake-contact", None), ("drake-contact", "sdf"), ("physx-contact", "usd")

@@ -1,4 +1,4 @@
-"""What is said of logs with one fault each, as it is kept: every finding with its columns, times, numbers and remedy."""
+"""What is said of logs with one fault each, as it is kept: every finding with columns, times, numbers and remedy."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ FORCE, TORQUE = ([f"wrench.left.{kind}.{axis}" for axis in "xyz"] for kind in ("
 ANKLE = "joint.left_ankle_pitch.position"
 
 # The weight goes from foot to foot, the torso leans by degrees, and the soles tilt little.
-LEAN = {"shift": 0.3, "torso": (sines((0.06, 0.2, 0.3)), sines((0.1, 0.15, 1.0)), sines((0.0, 0.0, 0.0))),
-        "ankles": dict.fromkeys(FEET, (sines((-0.1, 0.15, 1.0), (0.015, 0.3, 0.1)), sines((-0.06, 0.2, 0.3), (0.01, 0.4, 0.2))))}  # fmt: skip
+LEVEL = sines((-0.1, 0.15, 1.0), (0.015, 0.3, 0.1)), sines((-0.06, 0.2, 0.3), (0.01, 0.4, 0.2))
+TORSO = sines((0.06, 0.2, 0.3)), sines((0.1, 0.15, 1.0)), sines((0.0, 0.0, 0.0))
+LEAN = {"shift": 0.3, "torso": TORSO, "ankles": dict.fromkeys(FEET, LEVEL)}
 
 Fault = Callable[[MotionLog], MotionLog]
 
@@ -68,9 +69,7 @@ def turned(*angles: float) -> Fault:
 
     def fault(log: MotionLog) -> MotionLog:
         seen = Rotation.from_quat(log.stack(QUATERNION), scalar_first=True) * turn
-        read = {
-            name: values for name, values in zip(QUATERNION, seen.as_quat(scalar_first=True).T, strict=True)
-        }
+        read = dict(zip(QUATERNION, seen.as_quat(scalar_first=True).T, strict=True))
         for names in (GYROSCOPE, ACCELEROMETER):
             read |= dict(zip(names, turn.inv().apply(log.stack(names)).T, strict=True))
         return log.with_columns(read)
@@ -130,7 +129,7 @@ FAULTS: dict[str, Fault] = {
     "inverted attitude": scaled(QUATERNION[1:], -1.0),
     "attitude order": exchanged(QUATERNION, QUATERNION[1:] + QUATERNION[:1]),
     "attitude not unit": scaled(QUATERNION[:1], 0.7),
-    "attitude stands": lambda log: log.with_columns({name: np.full(len(log), log.column(name)[0]) for name in QUATERNION}),
+    "attitude stands": lambda log: log.with_columns({name: 0 * log.time + log.column(name)[0] for name in QUATERNION}),
     "imu turned a little": turned(0.0, 0.06, 0.0),
     "imu turned": turned(0.0, 0.0, np.pi / 2),
     "imu upside down": turned(np.pi, 0.0, 0.0),
@@ -154,7 +153,7 @@ FAULTS: dict[str, Fault] = {
     "lost frames": rows(lambda time: np.random.default_rng(0).random(time.size) > 0.1),
     "bursts": timed(lambda time: np.sort(np.floor(time / 0.08) * 0.08 + 1e-4 * (np.arange(time.size) % 8))),
     "frozen": lambda log: log.with_columns(
-        {name: np.where((log.time > 6) & (log.time < 6.5), log.column(name)[600], log.column(name)) for name in log.columns}
+        {name: np.where(abs(log.time - 6) < 0.3, values[600], values) for name, values in log.columns.items()}
     ),
     "placed aside": lambda log: shifted(log, np.array([0.03, -0.02, 0.01])),
     "steps": stepping,

@@ -1,10 +1,11 @@
-"""Whole pages as they are kept, without their scripts and styles: every word, number, line and place of every figure."""
+"""Whole pages as they are kept, without scripts and styles: every word, number, line and place of every figure."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,9 @@ from report_samples import write_campaign
 from report_walks import standing_result, walk_result, walk_tracks
 
 KEPT = Path(__file__).parent / "kept"
+MADE = "2026-01-01T00:00:00Z"
 SHARED: dict[str, Any] = {
-    "robot": "icub", "plantar": "0.1.0", "created": "2026-01-01T00:00:00Z", "settings": {"rows": "base"},
+    "robot": "icub", "plantar": "0.1.0", "created": MADE, "settings": {"rows": "base"},
     "inputs": [{"path": "/logs/walk.csv", "sha256": "cd" * 32, "role": "fit"}],
     "notes": [{"code": "inertia.unexcited", "severity": "warning", "text": "the head is still"}],
     "rank": 234, "condition_number": 4.1e5,
@@ -47,11 +49,11 @@ def feet(folder: Path) -> str:
 
 
 def walks(_: Path) -> str:
-    return _page(walk_result(), Path("residuals.parquet"), walk_tracks())
+    return _page(replace(walk_result(), created=MADE), Path("residuals.parquet"), walk_tracks())
 
 
 def stands(_: Path) -> str:
-    return _page(standing_result(), None, ())
+    return _page(replace(standing_result(), created=MADE), None, ())
 
 
 def dynamics(schema: str, **more: Any) -> Callable[[Path], str]:
@@ -65,7 +67,9 @@ def dynamics(schema: str, **more: Any) -> Callable[[Path], str]:
 def fleet(_: Path) -> str:
     groups = [GroupRow(f"day {day}", unit, START, 32 * code) for day, unit, code in
               ((1, "new sole", "ab"), (2, "ageing", "cd"), (3, "steady", "ef"))]  # fmt: skip
-    told = summary_of(changing_fleet(), failures(("g", "a.csv", "it is cut"), ("h", "b.csv", "it is cut")), 0.1)
+    told = summary_of(
+        changing_fleet(), failures(("g", "a.csv", "it is cut"), ("h", "b.csv", "it is cut")), 0.1
+    )
     return fleet_page(told, groups, run={"groups": 300, "failed": 2, "reused": 11, "seconds": 61.5})
 
 

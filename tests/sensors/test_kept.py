@@ -1,4 +1,4 @@
-"""What Newton's law tells of sensors in logs of a robot that is known to be otherwise, as it is kept: every number of it."""
+"""What Newton's law tells of sensors that read otherwise, as it is kept: every number of it."""
 
 from __future__ import annotations
 
@@ -113,8 +113,8 @@ def test_what_the_law_tells_is_as_it_is_kept(name: str, robot: RobotModel, logs:
         residuals += newton_euler_residuals(robot, in_time(robot, log, delay))
     pairs = [one.pair for one in residuals]
     told = {
-        "delay": delay, "residuals": residuals, "clock": clock_drift(pairs), "by log": delays_by_log(pairs, delay.delay),
-        "fading": (filtered := fading(residuals)), "fading notes": fading_notes(filtered),
+        "delay": delay, "residuals": residuals, "clock": clock_drift(pairs),
+        "by log": delays_by_log(pairs, delay.delay), "fading": (filtered := fading(residuals)), "fading notes": fading_notes(filtered),
         "moments": of_moments(robot, fit_moments(robot, residuals, [])),
         "walking": of_moments(robot, fit_moments(robot, residuals, ["one"], BENDING)),
     }  # fmt: skip
