@@ -114,7 +114,8 @@ def test_what_the_law_tells_is_as_it_is_kept(name: str, robot: RobotModel, logs:
     pairs = [one.pair for one in residuals]
     told = {
         "delay": delay, "residuals": residuals, "clock": clock_drift(pairs),
-        "by log": delays_by_log(pairs, delay.delay), "fading": (filtered := fading(residuals)), "fading notes": fading_notes(filtered),
+        "by log": delays_by_log(pairs, delay.delay), "fading": (filtered := fading(residuals)),
+        "fading notes": fading_notes(filtered),
         "moments": of_moments(robot, fit_moments(robot, residuals, [])),
         "walking": of_moments(robot, fit_moments(robot, residuals, ["one"], BENDING)),
     }  # fmt: skip

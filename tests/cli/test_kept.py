@@ -1,0 +1,67 @@
+"""What commands print, as it is kept: one after the other on the same logs, every table, note and last line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+import small_biped
+from biped import SLIPPING, record, sway
+from biped_robot import URDF, write_robot
+from command_line import run, write_csv
+from feet_trials import noisy, stepping
+from kept_texts import assert_as_kept
+
+KEPT = Path(__file__).parent / "kept"
+FEET = ["ROBOT", "sway.csv", "slip.csv", "--validate", "walk.csv"]
+COMMANDS: dict[str, Sequence[str]] = {
+    "inspect": ["inspect", "ROBOT", "sway.csv", "walk.csv", "--columns"],
+    "feet": ["identify", "feet", *FEET, "--out", "out"],
+    "feet of one offset": ["identify", "feet", *FEET, "--offset", "shared", "--wrench-delay", "0", "--out", "shared"],
+    "validate": ["validate", "out", "ROBOT", "slip.csv", "walk.csv"],
+    "diagnose": ["diagnose", "out"],
+    "select": ["select", "ROBOT", "sway.csv", "slip.csv"],
+    "show": ["show", "reference", "out"],
+    "online": ["online", "ROBOT", "sway.csv", "--result", "out"],
+    "online alone": ["online", "ROBOT", "walk.csv", "--wrench-delay", "0"],
+    "export": ["export", "out", "--to", "urdf", "--out", "robot.urdf"],
+    "export yaml": ["export", "out", "--to", "yaml", "--out", "feet.yaml"],
+    "report": ["report", "out"],
+    "convert": ["convert", "sway.csv", "--out", "sway.parquet"],
+    "init": ["init", "biped.urdf", "sway.csv", "--out", "guess.yaml"],
+    "inertia": ["identify", "inertia", "moving/biped.yaml", "moving/one.csv", "--validate", "moving/two.csv", "--out",
+                "inertia"],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("kept")
+    write_robot(folder, uncertainty={})
+    (folder / "biped.urdf").write_text(URDF)
+    logs = [sway("sway", 1), sway("slip", 2, truth=SLIPPING), sway("walk", 3)]
+    made = [noisy(record(one), seed) for seed, one in enumerate(logs)]
+    for log in (*made[:2], stepping(made[2])):
+        write_csv(log, folder / f"{log.name}.csv")
+    (folder / "moving").mkdir()
+    robot = small_biped.robot(folder / "moving")
+    real = small_biped.truth(robot.floating_model, 1)
+    for seed, name in enumerate(("one", "two")):
+        write_csv(small_biped.record(robot, real, name, seed, 20.0, 0.5), folder / "moving" / f"{name}.csv")
+    return folder
+
+
+def test_commands_print_what_is_kept(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("COLUMNS", "200")
+    for name, words in COMMANDS.items():
+        code = run(*(word.replace("ROBOT", "robot.yaml") for word in words))
+        said = capsys.readouterr()
+        text = f"{code}\n{said.out}\n{said.err}".replace(str(folder), "FOLDER")
+        text = re.sub(r"[\d.]+ µs", "0 µs", re.sub(r"[─━]+", "", text))
+        assert_as_kept(text, KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)
