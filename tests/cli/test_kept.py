@@ -9,21 +9,21 @@ from pathlib import Path
 import pytest
 
 import small_biped
-from biped import SLIPPING, record, sway
+from biped import record, sway
 from biped_robot import URDF, write_robot
 from command_line import run, write_csv
 from feet_trials import noisy, stepping
 from kept_texts import assert_as_kept
 
 KEPT = Path(__file__).parent / "kept"
-FEET = ["ROBOT", "sway.csv", "slip.csv", "--validate", "walk.csv"]
+FEET = ["ROBOT", "sway.csv", "bow.csv", "--validate", "walk.csv"]
 COMMANDS: dict[str, Sequence[str]] = {
     "inspect": ["inspect", "ROBOT", "sway.csv", "walk.csv", "--columns"],
     "feet": ["identify", "feet", *FEET, "--out", "out"],
     "feet of one offset": ["identify", "feet", *FEET, "--offset", "shared", "--wrench-delay", "0", "--out", "shared"],
-    "validate": ["validate", "out", "ROBOT", "slip.csv", "walk.csv"],
+    "validate": ["validate", "out", "ROBOT", "bow.csv", "walk.csv"],
     "diagnose": ["diagnose", "out"],
-    "select": ["select", "ROBOT", "sway.csv", "slip.csv"],
+    "select": ["select", "ROBOT", "sway.csv", "bow.csv"],
     "show": ["show", "reference", "out"],
     "online": ["online", "ROBOT", "sway.csv", "--result", "out"],
     "online alone": ["online", "ROBOT", "walk.csv", "--wrench-delay", "0"],
@@ -42,7 +42,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("kept")
     write_robot(folder, uncertainty={})
     (folder / "biped.urdf").write_text(URDF)
-    logs = [sway("sway", 1), sway("slip", 2, truth=SLIPPING), sway("walk", 3)]
+    logs = [sway("sway", 1), sway("bow", 2), sway("walk", 3)]
     made = [noisy(record(one), seed) for seed, one in enumerate(logs)]
     for log in (*made[:2], stepping(made[2])):
         write_csv(log, folder / f"{log.name}.csv")
