@@ -26,7 +26,7 @@ KEPT = Path(__file__).parent / "kept"
 HEIGHT = 0.65  # m, of the root
 SIZES = {
     "imu": {"orientation": 4, "angular_velocity": 3, "linear_acceleration": 3},
-    **dict.fromkeys(("right", "left"), {"force": 3, "torque": 3, "sole": 4, "place": 3}),
+    **{side: {"force": 3, "torque": 3, "sole": 4, "place": 3} for side in ("right", "left")},
 }
 
 
