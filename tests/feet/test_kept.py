@@ -105,7 +105,7 @@ CAMPAIGNS = {
     "slipping": Campaign(slipping, FeetSettings(wrench_delay=0.0)),
     "misplaced": Campaign(misplaced),
     "misread": Campaign(misread, uncertainty=Uncertainty(between_recordings=0.02)),
-    "poor": Campaign(poor),
+    "poor": Campaign(poor, uncertainty=Uncertainty(joint_compliance=2e-5)),
     "lifting": Campaign(lifting),
 }
 
