@@ -68,6 +68,17 @@ def faulty(log: MotionLog) -> MotionLog:
     return MotionLog("faulty", time, columns)
 
 
+def coarse(log: MotionLog) -> MotionLog:
+    """Encoders that count, one of which stands still for a moment, so that nobody sees it before it leaps."""
+    names = [name for name in log.columns if name.startswith("joint.") and name.endswith("position")]
+    read = {name: 5e-4 * np.round(log.column(name) / 5e-4) for name in names}
+    for start in (12.0, 17.0, 23.0):
+        stands = (log.time >= start) & (log.time < start + 0.16)
+        ankle = read["joint.left_ankle_pitch.position"]
+        ankle[stands] = ankle[stands][0]
+    return log.with_columns(read)
+
+
 def late(log: MotionLog, part: str, seconds: float) -> MotionLog:
     names = [name for name in log.columns if part in name]
     return log.with_columns(
@@ -102,6 +113,7 @@ LOGS: dict[str, Callable[[], tuple[MotionLog, FeetResult | None]]] = {
     "softer": lambda: (joined(swayed(lifts=LIFTS), swayed(truth=SOFTER, lifts=LIFTS)), None),
     "faulty": lambda: (faulty(swayed()), None),
     "faulty as told": lambda: (faulty(swayed(truth=SLIPPING)), result(model="elastoplastic")),
+    "coarse as told": lambda: (coarse(swayed(truth=SLIPPING)), result(model="elastoplastic")),
     "late forces": lambda: (late(swayed(), "wrench", 0.03), None),
     "late imu": lambda: (late(swayed(), "imu", 0.03), None),
     "without attitude": lambda: (without(swayed(), "orientation"), None),
