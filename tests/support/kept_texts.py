@@ -67,8 +67,8 @@ def described(value: Any, name: str = "") -> str:
         items = [*value._asdict().items()]
     elif isinstance(value, Mapping):
         items = [*value.items()]
-    elif isinstance(value, list | tuple):
-        items = [*enumerate(value)]
+    elif isinstance(value, list | tuple | set | frozenset):
+        items = [*enumerate(value if isinstance(value, list | tuple) else sorted(value))]
     else:
         return f"{name}: {_shortened(float(value) if isinstance(value, np.number) else value, ())}\n"
     return "".join(described(one, f"{name}.{key}" if name else str(key)) for key, one in items)
