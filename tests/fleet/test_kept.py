@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from fleet_tables import failures, results, row
-from kept_texts import assert_as_kept, described
+from fleet_tables import changing_fleet, failures, results, row
+from kept_texts import assert_as_kept, described, lines_of
+from plantar.cli.fleet.report import print_summary
 from plantar.fleet.statistics.changes import history_of
 from plantar.fleet.statistics.random_effects import mean_of, nested_means
 from plantar.fleet.statistics.trend import trend_of
@@ -21,7 +23,10 @@ WRONG = failures(
 )  # fmt: skip
 
 
-def test_a_summary_is_as_it_is_kept() -> None:
+def test_a_summary_is_as_it_is_kept(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In memory, in its file and on the terminal."""
     random = np.random.default_rng(3)
     other = [
         row(f"unit {unit}", 9 * week, foot, axis, 300 * (1 + 0.1 * unit) * np.exp(0.02 * random.normal()),
@@ -30,7 +35,12 @@ def test_a_summary_is_as_it_is_kept() -> None:
     ]  # fmt: skip
     other[5] |= {"value": 900.0}
     other[9] |= {"value": None, "time": None}
-    assert_as_kept(described(summary_of(results(other), WRONG, 0.5)), KEPT / "summary.txt", share=1e-5)
+    found = summary_of(results(other), WRONG, 0.5)
+    monkeypatch.setenv("COLUMNS", "150")
+    print_summary(found)
+    print_summary(summary_of(changing_fleet(), WRONG, 0.5))
+    text = f"{described(found)}{lines_of(found.to_dict())}{capsys.readouterr().out}"
+    assert_as_kept(text, KEPT / "summary.txt", share=1e-5)
 
 
 def test_histories_and_effects_are_as_they_are_kept() -> None:
