@@ -26,7 +26,7 @@ COMMANDS: dict[str, Sequence[str]] = {
     "select": ["select", "ROBOT", "sway.csv", "bow.csv"],
     "show": ["show", "reference", "out"],
     "online": ["online", "ROBOT", "sway.csv", "--result", "out"],
-    "online alone": ["online", "ROBOT", "walk.csv", "--wrench-delay", "0"],
+    "online alone": ["online", "ROBOT", "walk.csv", "--wrench-delay", "0", "--cutoff", "3"],
     "export": ["export", "out", "--to", "urdf", "--out", "robot.urdf"],
     "export yaml": ["export", "out", "--to", "yaml", "--out", "feet.yaml"],
     "report": ["report", "out"],
