@@ -16,20 +16,22 @@ from feet_trials import noisy, stepping
 from kept_texts import assert_as_kept
 
 KEPT = Path(__file__).parent / "kept"
+OUT = "out [b]"  # no markup
 FEET = ["ROBOT", "sway.csv", "bow.csv", "--validate", "walk.csv"]
 COMMANDS: dict[str, Sequence[str]] = {
     "inspect": ["inspect", "ROBOT", "sway.csv", "walk.csv", "--columns"],
-    "feet": ["identify", "feet", *FEET, "--out", "out"],
+    "feet": ["identify", "feet", *FEET, "--out", OUT],
     "feet of one offset": ["identify", "feet", *FEET, "--offset", "shared", "--wrench-delay", "0", "--out", "shared"],
-    "validate": ["validate", "out", "ROBOT", "bow.csv", "walk.csv"],
-    "diagnose": ["diagnose", "out"],
+    "validate": ["validate", OUT, "ROBOT", "bow.csv", "walk.csv"],
+    "diagnose": ["diagnose", OUT],
+    "diagnose for scripts": ["diagnose", OUT, "--json"],
     "select": ["select", "ROBOT", "sway.csv", "bow.csv"],
-    "show": ["show", "reference", "out"],
-    "online": ["online", "ROBOT", "sway.csv", "--result", "out"],
+    "show": ["show", "reference", OUT],
+    "online": ["online", "ROBOT", "sway.csv", "--result", OUT],
     "online alone": ["online", "ROBOT", "walk.csv", "--wrench-delay", "0", "--cutoff", "3"],
-    "export": ["export", "out", "--to", "urdf", "--out", "robot.urdf"],
-    "export yaml": ["export", "out", "--to", "yaml", "--out", "feet.yaml"],
-    "report": ["report", "out"],
+    "export": ["export", OUT, "--to", "urdf", "--out", "robot.urdf"],
+    "export yaml": ["export", OUT, "--to", "yaml", "--out", "feet.yaml"],
+    "report": ["report", OUT],
     "convert": ["convert", "sway.csv", "--out", "sway.parquet"],
     "init": ["init", "biped.urdf", "sway.csv", "--out", "guess.yaml"],
     "inertia": ["identify", "inertia", "moving/biped.yaml", "moving/one.csv", "--validate", "moving/two.csv", "--out",
@@ -59,9 +61,14 @@ def test_commands_print_what_is_kept(
 ) -> None:
     monkeypatch.chdir(folder)
     monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.delenv("NO_COLOR", raising=False)
     for name, words in COMMANDS.items():
         code = run(*(word.replace("ROBOT", "robot.yaml") for word in words))
         said = capsys.readouterr()
         text = f"{code}\n{said.out}\n{said.err}".replace(str(folder), "FOLDER")
-        text = re.sub(r"[\d.]+ µs", "0 µs", re.sub(r"[─━]+", "", text))
+        text = re.sub(r"[\d.]+ µs", "0 µs", re.sub(r"[─━]+|\x1b\[0m", "", text))
+        text = re.sub(r"\x1b\[([\d;]+)m", r"<\1>", text)
+        text = re.sub(r"(<[\d;]+>)(.*)", lambda line: line[1] + line[2].replace(line[1], ""), text)
         assert_as_kept(text, KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)
