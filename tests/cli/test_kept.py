@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -72,3 +73,30 @@ def test_commands_print_what_is_kept(
         text = re.sub(r"\x1b\[([\d;]+)m", r"<\1>", text)
         text = re.sub(r"(<[\d;]+>)(.*)", lambda line: line[1] + line[2].replace(line[1], ""), text)
         assert_as_kept(text, KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)
+
+
+def test_every_command_that_reads_logs_hears_how_much_memory_they_may_take(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    for name in ("inspect", "feet", "select", "online alone", "convert", "inertia"):
+        words = [word.replace("ROBOT", "robot.yaml") for word in COMMANDS[name]]
+        assert run(*words, "--memory", "100KB") == 1, name
+        assert "memory" in capsys.readouterr().err, name
+    assert (
+        run("identify", "joints", "moving/biped.yaml", "moving/one.csv", "--out", "j", "--memory", "100KB")
+        == 1
+    )
+    assert run("bug-report", "robot.yaml", "sway.csv", "--memory", "100KB") == 0
+    assert "is refused" in capsys.readouterr().out
+
+
+def test_what_is_printed_for_scripts_is_json_alone(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    for name in ("inspect", "feet", "validate", "diagnose", "select", "show", "online alone", "inertia"):
+        assert run(*(word.replace("ROBOT", "robot.yaml") for word in COMMANDS[name]), "--json") == 0, name
+        text = capsys.readouterr().out
+        assert isinstance(json.loads(text), dict), name
+        assert text.count("\n\n") == 0, name
