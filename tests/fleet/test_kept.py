@@ -39,7 +39,7 @@ def test_a_summary_is_as_it_is_kept(
     monkeypatch.setenv("COLUMNS", "150")
     print_summary(found)
     print_summary(summary_of(changing_fleet(), WRONG, 0.5))
-    text = f"{described(found)}{lines_of(found.to_dict())}{capsys.readouterr().out}"
+    text = described(found) + lines_of(found.to_dict(), "plantar") + capsys.readouterr().out
     assert_as_kept(text, KEPT / "summary.txt", share=1e-5)
 
 
