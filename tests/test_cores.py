@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from plantar import cores
 from plantar.cores import begun, over_cores, usable_cores
 from plantar.logs.motion_log import MotionLog
 
@@ -257,3 +258,13 @@ def test_what_nobody_waits_for_is_stopped(tmp_path: Path) -> None:
         pass
     time.sleep(0.5)
     assert not (tmp_path / "late").exists()
+
+
+def test_work_that_is_given_cores_shares_none_with_the_work_around_it() -> None:
+    with two_cores(), cores._idle_cores() as around:
+        with cores._idle_cores() as within:
+            assert within is around
+        with cores._idle_cores(3) as own:
+            assert own is not around
+            assert [own.take() for _ in range(3)] == [True, True, False], "all but the one that is at work"
+        assert [around.take() for _ in range(2)] == [True, False]

@@ -123,7 +123,16 @@ void lateness_is_told_with_its_weight() {
   check::that(published(values, facts()).late.weight == 0.0, "too few groups");
 }
 
+void a_stiffness_is_a_bushs_between_nothing_and_the_stiffest() {
+  AxisValues values;
+  for (const double stiffness : {-1.0, 0.0, 1e-3, 999.0, 1000.0, 2000.0}) {
+    values.value[STIFFNESS] = stiffness;
+    check::that(values.plausible(1000.0) == (stiffness > 0.0 && stiffness < 999.5), "whether a stiffness is plausible");
+  }
+}
+
 void run() {
+  a_stiffness_is_a_bushs_between_nothing_and_the_stiffest();
   every_cause_has_its_part();
   a_compliance_that_is_held_back_is_open();
   a_stiffness_is_sure_where_it_is_known_and_one_of_a_bush();

@@ -15,6 +15,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from kept_texts import assert_as_kept, lines_of
 from plantar.campaign.replay import IDENTIFIED, RECORD, RIGID
 from plantar.cli import main
 from plantar.files import sha256
@@ -185,3 +186,14 @@ def test_an_unknown_preset_is_refused_before_anything_is_played(tmp_path: Path) 
     assert (code, out) == (1, "")
     assert error.splitlines()[0].startswith("plantar: unknown preset 'rosy' (valid: ideal, ")
     assert not (tmp_path / "out").exists()
+
+
+def test_its_numbers_and_words_are_as_they_are_kept(
+    content: dict[str, Any], demo: tuple[Path, str, str]
+) -> None:
+    folder, out, error = demo
+    kept = Path(__file__).parent / "kept"
+    said = re.sub(r"[─━]+|\d+(\.\d)? s\b|.*: \d+ %\n", "", out + error).replace(str(folder.parent), "FOLDER")
+    assert_as_kept(re.sub(r"\S*FOLDER[\s\S]*?\n\n", "", said), kept / "said.txt", share=5e-3)
+    left_out = ("created", "plantar", "inputs", "robot_model", "phases", "path", "sha256", "assumptions")
+    assert_as_kept(lines_of(content, *left_out), kept / "result.txt", share=2e-3, least=1e-5)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from plantar.campaign.compared import DirectBeside, ParameterBeside
-from plantar.campaign.replay import ReplayRow
-from plantar.campaign.tables import replay_table, simulator_table, table_1, table_2
+from dataclasses import replace
+from pathlib import Path
+
+from kept_texts import assert_as_kept, described
+from plantar.campaign.compared import CrossBeside, DirectBeside, ParameterBeside
+from plantar.campaign.replay import IDENTIFIED, RECORD, RIGID, ReplayRow
+from plantar.campaign.tables import replay_table, simulator_table, table_1, table_2, table_3
 from plantar.report.content import Table
 
 ROW = ParameterBeside(
@@ -73,3 +77,32 @@ def test_replays_stand_motion_by_motion_in_milliradians() -> None:
         ("motion", ""), ("feet", ""), ("chest pitch", "mrad"), ("left pitch torque", "N·m"),
     ]  # fmt: skip
     assert table.folded
+
+
+def test_all_tables_are_as_they_are_kept() -> None:
+    """Their heads, units, cells and marks, and what stands below them."""
+    unknown = replace(
+        ROW, foot="right", name="damping", unit="N.m.s/rad", interval95=None, covered=None, published=None,
+        paper_way=None, error_percent=None, paper_way_error_percent=7.0,
+    )  # fmt: skip
+    direct = [DirectBeside("left", axis, 0.98, 20.0, share, None, None, 6.54, 12.0) for axis, share in
+              (("roll", 5.1), ("pitch", 4.9))]  # fmt: skip
+    cross = [
+        CrossBeside(motion, foot, axis, 0.2 + 0.1 * place, 0.35, None if place else 0.4, 1.5 * place or None)
+        for place, (motion, foot, axis) in enumerate((
+            ("squat", "left", "pitch"), ("squat", "left", "roll"), ("squat", "right", "pitch"),
+            ("tilt", "left", "roll")))
+    ]  # fmt: skip
+    replayed = [
+        ReplayRow(feet, motion, quantity, unit, None if (feet, motion) == (RIGID, "bow") else 0.01 * place + size)
+        for place, feet in enumerate((IDENTIFIED, RIGID, RECORD), 1) for motion, size in (("a", 0.002), ("bow", 0.005))
+        for quantity, unit in (("chest pitch", "rad"), ("chest roll", "rad"), ("left pitch torque", "N.m"))
+    ]  # fmt: skip
+    made = [
+        table_1([ROW, unknown]),
+        table_2(direct),
+        table_3(cross),
+        simulator_table(replayed),
+        replay_table(replayed),
+    ]
+    assert_as_kept(described(made), Path(__file__).parent / "kept" / "tables.txt")

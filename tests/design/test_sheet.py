@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from kept_texts import assert_as_kept
 from plantar.design.writing.sheet import sheet
 
 CONTENT: dict[str, Any] = {
@@ -88,3 +90,14 @@ def test_what_one_rehearsal_does_not_measure_is_not_measured() -> None:
     assert "both feet: not identified," in page
     assert "nobody checked whether arms and trunk touch" in page
     assert "- Make gentler versions with `--approach`" in page
+
+
+@pytest.mark.parametrize("approach", [True, False])
+def test_the_whole_sheet_is_as_it_is_kept(approach: bool) -> None:
+    """Without limits on one foot and the links unwatched where there are no gentler versions."""
+    content = (
+        CONTENT
+        if approach
+        else CONTENT | {"self_collision": {"checked": False}, "right_foot_ahead": {"value": 0.0}}
+    )
+    assert_as_kept(sheet(content, approach), Path(__file__).parent / "kept" / f"sheet_{approach}.txt")

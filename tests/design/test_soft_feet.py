@@ -111,3 +111,11 @@ def test_told_and_scaled() -> None:
     told = design_samples.told()
     assert told.damping == pytest.approx(0.04 * told.stiffness)
     assert told.times(2.0) == replace(told, stiffness=2 * told.stiffness, damping=2 * told.damping)
+
+
+def test_what_presses_slowly_is_carried_by_both_feet_and_no_more() -> None:
+    """All of it within a ten thousandth, by what the rubber gives way: no weight tips what only goes up and down."""
+    force = 100.0 * window(TIME, 2.0, 14.0, 6.0)
+    found = respond(PENDULUM, BUSH, np.stack([force, 0 * TIME, 0 * TIME]), flat(), PERIOD, beside=(0.0, 0.0))
+    for load in found.load.values():
+        assert load[800:1200] == pytest.approx(force[800:1200] / 2, rel=1e-4)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -258,3 +260,32 @@ def test_tables_that_are_no_motion_are_refused(tmp_path: Path) -> None:
     uneven = command_line.write_csv(MotionLog("uneven", time, lifted), tmp_path / "uneven.csv")
     with pytest.raises(MotionError, match="the first row has one foot"):
         own_plan(uneven, robot)
+
+
+def test_the_right_foot_stands_ahead_by_a_share_of_their_distance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the legs reach so far; side by side alone where they do not."""
+    asked: list[float] = []
+    places = {"left": np.array([0.0, 0.09, 0.0]), "right": np.array([0.0, -0.11, 0.0])}
+
+    def standing(_: object, __: object, ahead: float) -> Any:
+        asked.append(ahead)
+        if ahead > reach:
+            raise MotionError("cannot")
+        return Stood(ahead)
+
+    monkeypatch.setattr(story, "Legs", SimpleNamespace(of=standing))
+    monkeypatch.setattr(story, "free_swing", lambda *_: 1.0)
+    linear = SimpleNamespace(pendulum=SimpleNamespace(places=places))
+    monkeypatch.setattr(story, "LinearRobot", SimpleNamespace(of=lambda _: linear))
+    for reach, found in ((1.0, [0.0, 0.05]), (0.01, [0.0])):  # noqa: B007
+        assert [legs.ahead for legs, _ in story._stances(hrp2.robot())] == pytest.approx(found)
+    assert asked == pytest.approx([0.0, 0.05, 0.0, 0.05]), "a quarter of their distance"
+
+
+@dataclass(frozen=True)
+class Stood:
+    """Legs that stand with the right foot ahead [m]."""
+
+    ahead: float
+    rest: tuple[None] = (None,)
+    arms: float = 1.0

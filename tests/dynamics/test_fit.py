@@ -242,3 +242,21 @@ def test_what_cannot_be_fitted_is_refused_in_one_line() -> None:
     ball.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
     with pytest.raises(RobotError, match="'ball'"):
         fit_base_parameters(ball, q, v, a, tau, rows="all")
+
+
+def test_deviations_count_what_is_excited_where_not_all_is() -> None:
+    """A robot of which one joint alone turns: its noise comes back over the equations less the rank. Columns in which
+    nothing but rounding is left are none: their values were 1e16."""
+    model = example_robots.model(example_robots.PANDA)
+    q, v, a = random_motion(model, 12, 3)
+    q[:], v[:], a[:] = q[0], v * np.eye(model.nv)[1], a * np.eye(model.nv)[1]
+    q[:, 1] += np.linspace(-0.5, 0.5, 12)
+    fit = fit_base_parameters(model, q, v, a, measured(model, (q, v, a), 0.5, 1), rows="all")
+    base = base_parameters(Equation(model))
+    y = regressor(model, q, v, a).reshape(-1, 10 * (model.njoints - 1))[:, base.kept]
+    assert fit.rank == np.linalg.matrix_rank(y) < len(base)
+    assert np.abs(fit.values).max() < 1e3
+    count, rank = len(y), fit.rank
+    unseen = solve_triangle(np.linalg.qr(np.column_stack([y, np.zeros(count)]), mode="r"))
+    white = fit.residual_rms * np.sqrt(count / (count - rank))
+    np.testing.assert_allclose(fit.std[unseen.excited], (white * unseen.spread)[unseen.excited], rtol=1e-6)

@@ -175,6 +175,18 @@ CRATE = """    def Xform "crate" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "
         float physics:mass = 60
     }
 
+    def PhysicsFixedJoint "crate_stands"
+    {
+        rel physics:body0 = </World>
+        rel physics:body1 = </World/crate>
+    }
+
+    def PhysicsFixedJoint "biped_hangs"
+    {
+        rel physics:body0 = </World>
+        rel physics:body1 = </World/biped/pelvis>
+    }
+
     def Xform "biped"
 """
 BOX = '<body name="crate"><freejoint/><geom type="box" size="0.2 0.2 0.2" mass="60"/></body></worldbody>'

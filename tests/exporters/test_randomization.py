@@ -282,3 +282,13 @@ print("\\n" + json.dumps([len(kept), pitch, roll]))
     assert count == 10
     assert (np.mean(pitch), np.std(pitch)) == pytest.approx((480, 4.8), rel=0.06)
     assert np.corrcoef(pitch, roll)[0, 1] == pytest.approx(0.36, abs=0.06)
+
+
+def test_a_number_that_is_zero_is_spread_as_if_nothing_were_known(
+    feet: dict[str, Any], tmp_path: Path
+) -> None:
+    feet["parameters"].append(
+        feet["parameters"][2] | {"name": "cubic_stiffness", "unit": "N.m/rad3", "value": 0.0}
+    )
+    made, _ = ranges(feet, tmp_path)
+    assert all(np.isfinite(row["std"]) for row in made["parameters"])

@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from export_robots import write_urdf
+from plantar.exporters.sdf.from_urdf import sdf_from_urdf
 from plantar.exporters.sdf.tree import SdfTree, pose_of
+from plantar.notes import Notes
 
 SDF = """
 <sdf version="1.9"><model name="arm">
@@ -60,3 +63,26 @@ def test_shapes_reach_as_far_as_they_are_large_about_their_pose(
     assert (points.max(axis=0) - points.min(axis=0)) / 2 == pytest.approx(half)
     assert (points.max(axis=0) + points.min(axis=0)) / 2 == pytest.approx((1, 2, 3))
     np.testing.assert_allclose(pose_of(collision)[:3, :3], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-12)
+
+
+def test_meshes_that_a_reader_does_not_take_are_left_out_and_named(tmp_path: Path) -> None:
+    path = write_urdf(tmp_path / "biped.urdf")
+    shapes = "".join(
+        f'<{tag}><geometry><mesh filename="meshes/{name}"/></geometry></{tag}>'
+        for tag, name in (("visual", "a.DAE"), ("visual", "b.obj"), ("collision", "c.ply"))
+    )
+    path.write_text(path.read_text().replace('<link name="pelvis">', f'<link name="pelvis">{shapes}'))
+    for taken, kept in (
+        (None, ["c.ply", "a.DAE", "b.obj"]),
+        ((".obj",), ["b.obj"]),
+        ((".dae", ".obj"), ["a.DAE", "b.obj"]),
+    ):
+        notes = Notes()
+        root = sdf_from_urdf(path, notes, taken)
+        found = [uri.rsplit("/", 1)[-1] for uri in (element.text or "" for element in root.iter("uri"))]
+        assert found == kept
+        said = [note.text for note in notes if note.code == "export_mesh"]
+        lost = [name for name in ("c.ply", "a.DAE", "b.obj") if name not in kept]
+        assert len(said) == bool(lost)
+        if lost:
+            assert f"{len(lost)} meshes that are not {', '.join(taken or ())} left out: {lost[0]}" in said[0]

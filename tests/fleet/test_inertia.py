@@ -16,6 +16,7 @@ from plantar.fleet.inertia import inertia_over
 from plantar.logs.save import save_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.whole_body.inertia import identify_inertia
+from plantar.whole_body.settings import DynamicsSettings
 
 LOGS = 9  # more than one branch of the tree
 
@@ -51,13 +52,14 @@ def assert_same(found: DynamicsResult, alone: DynamicsResult) -> None:
     assert (found.rank, found.urdf[:500]) == (alone.rank, alone.urdf[:500])
 
 
-@pytest.mark.parametrize("count", [1, LOGS])
-def test_the_sum_of_factors_is_what_one_process_finds(client: Any, folder: Path, count: int) -> None:
-    found = inertia_over(
-        client, str(folder / "biped.yaml"), logs(folder)[:count], settings=None, progress=lambda _: None
-    )
+@pytest.mark.parametrize(("count", "settings"), [(1, DynamicsSettings(cutoff=2.0)), (LOGS, None)])
+def test_the_sum_of_factors_is_what_one_process_finds(
+    client: Any, folder: Path, count: int, settings: DynamicsSettings | None
+) -> None:
+    robot, some = folder / "biped.yaml", logs(folder)[:count]
+    found = inertia_over(client, str(robot), some, settings, progress=lambda _: None)
     assert len(found.inputs) == count
-    assert_same(found, identify_inertia(folder / "biped.yaml", logs(folder)[:count]))
+    assert_same(found, identify_inertia(robot, some, settings=settings))
 
 
 def test_a_broken_log_is_told_and_left_out(client: Any, folder: Path) -> None:

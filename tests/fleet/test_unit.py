@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from plantar.errors import PlantarError
 from plantar.feet.settings import FeetSettings
-from plantar.fleet.places import Stamp
+from plantar.fleet.places import Stamp, stamp_of
+from plantar.fleet.run import _known_key
 from plantar.fleet.unit import Failure, Unit, UnitInput, UnitRow, contents_of, read_unit, unit_file, unit_key
 
 LOG = UnitInput("s3://b/x.csv", "x.csv", "fit", "ab" * 32, Stamp(12, "today"))
@@ -44,3 +48,19 @@ def test_the_key_is_of_content_names_order_and_settings() -> None:
     ]
     assert usual == unit_key("robot", list(INPUTS), FeetSettings())
     assert len({usual, *others}) == 7
+
+
+def test_a_groups_key_is_known_where_no_log_has_changed_since_it_was_read(tmp_path: Path) -> None:
+    log = tmp_path / "x.csv"
+    log.write_text("time\n0\n")
+    robot: Any = SimpleNamespace(sha256="robot")
+    group: Any = SimpleNamespace(logs=(SimpleNamespace(place=str(log), role="fit"),))
+    read = {(str(log), stamp_of(str(log))): "ab" * 32}
+    assert _known_key(group, robot, FeetSettings(), read) == unit_key(
+        "robot", [("fit", "x.csv", "ab" * 32)], FeetSettings()
+    )
+    assert _known_key(group, robot, FeetSettings(), {}) is None, "nobody has read it"
+    log.write_text("time\n0\n0.1\n")
+    assert _known_key(group, robot, FeetSettings(), read) is None, "it is another now"
+    log.unlink()
+    assert _known_key(group, robot, FeetSettings(), read) is None, "it is gone"

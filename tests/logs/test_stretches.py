@@ -191,3 +191,12 @@ def test_parquet_is_read_as_if_it_had_been_read_whole(tmp_path: Path) -> None:
     assert len(open_log(path, longest=LONGEST, memory=whole.size // 2)) == len(read)
     with pytest.raises(NoRoom):
         open_log(path, memory=whole.size // 2)
+
+
+def test_torques_about_the_vertical_do_not_choose() -> None:
+    moves = [(600.0 + 60.0 * place, 660.0 + 60.0 * place) for place in range(10)]
+    log = long_log(x=moving(TIME, [(300.0, 420.0)], 0.5, 0.1), z=moving(TIME, moves, 0.5, 50.0))
+    assert (
+        most_moving(log).time.tolist()
+        == most_moving(long_log(x=log.column(TORQUE.format("x")))).time.tolist()
+    )

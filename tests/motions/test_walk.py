@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
+from kept_texts import assert_as_kept, described
 from plantar.contact.balance import planned_wrench, sole_outlines, zero_moment_point
 from plantar.contact.polygon import convex_hull, inside_distance
 from plantar.errors import MotionError
@@ -147,3 +149,10 @@ def test_what_no_robot_walks_is_refused(name: str, options: dict[str, float], me
     with pytest.raises(MotionError, match=message) as caught:
         plan_motion(name, hrp2.robot(), hrp2.postures(), **options)
     assert "\n" not in str(caught.value)
+
+
+def test_a_walk_is_as_it_is_kept() -> None:
+    plan = built()[1]
+    ways = {name: plan.positions[:, place] for place, name in enumerate(plan.joints)}
+    told = described({"plan": plan, "ways": ways})
+    assert_as_kept(told, Path(__file__).parent / "kept" / "walk.txt", share=1e-4, least=1e-5)

@@ -20,6 +20,7 @@ from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
 from in_their_place import IN_THEIR_PLACE
+from kept_outputs import KEPT
 from literal_edges import LITERAL_EDGES
 from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
@@ -62,4 +63,5 @@ LISTS = {
     "seldom_run": SELDOM_RUN,
     "in_their_place": IN_THEIR_PLACE,
     "by_hand": BY_HAND,
+    "kept_outputs": KEPT,
 }

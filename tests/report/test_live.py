@@ -94,6 +94,16 @@ def test_a_plots_scale_holds_its_values_and_a_little_more() -> None:
     assert plot._plot.scales["y"]["range"] == pytest.approx((-1.0, 1.0))
 
 
+def test_pictures_that_are_closer_than_a_browser_draws_are_left_out(robot: RobotModel) -> None:
+    """Time may begin anew, and is drawn at once."""
+    with live.LiveView(robot, port=8492) as view:
+        drawn: list[float] = []
+        view._feet = {"left": SimpleNamespace(show=lambda now, _: drawn.append(now))}  # type: ignore[dict-item]
+        for now in (0.0, 0.4 * live.FRAME, 0.9 * live.FRAME, 1.1 * live.FRAME, 1.2 * live.FRAME, 5.0, 0.0):
+            view.show(now, {"left": SimpleNamespace()})  # type: ignore[dict-item]
+    assert drawn == [0.0, 1.1 * live.FRAME, 5.0, 0.0]
+
+
 def test_a_browser_draws_it(robot: RobotModel, replay: Replay, browser: Any) -> None:
     with live.LiveView(robot, port=8481) as view:
         page, errors = browser.new_page(), list[str]()

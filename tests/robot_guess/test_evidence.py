@@ -6,13 +6,17 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from scipy.spatial.transform import Rotation
 
 from example_robots import TALOS
+from plantar.errors import RobotError
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.robot_guess import evidence, guess_robot_file
+from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.feet import Sole
 from standing_robot import talos_sways
 
@@ -80,3 +84,23 @@ def test_an_outline_that_was_guessed_is_widened_one_of_shapes_is_doubted(
     assert (
         doubt is None or f"the left foot's centre of pressure leaves its outline {doubt}:" in doubts[0].text
     )
+
+
+@pytest.mark.parametrize(("links", "found"), [
+    ('<link name="right_foot"/>', "right"), ('<link name="left_sole"/>', "left"), ('<link name="foot"/>', "right"),
+    ('<link name="plate"/><link name="left_foot"/><joint name="a" type="fixed"><parent link="left_foot"/>'
+     '<child link="plate"/></joint>', "left"),
+    ('<link name="box"/>', "'box' is not called a foot"), ("", "has no links"),
+])  # fmt: skip
+def test_a_foot_alone_on_a_rig_is_the_root_of_a_urdf_without_joints(
+    links: str, found: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "rig.urdf"
+    path.write_text(f'<robot name="rig">{links}</robot>')
+    tree, model = UrdfTree.load(path), pin.Model()
+    if found in ("left", "right"):
+        biped = find_biped(tree, model)
+        assert [leg.side for leg in biped.legs] == [found]
+    else:
+        with pytest.raises(RobotError, match=found):
+            find_biped(tree, model)

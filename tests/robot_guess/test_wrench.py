@@ -6,10 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from plantar.robot_guess.seat import ORIGIN, Seat
 from plantar.robot_guess.stance import Stance
-from plantar.robot_guess.wrench import moment_arms, seats_by_log
+from plantar.robot_guess.wrench import SOLE_AXES, _turned, moment_arms, seats_by_log
 
 SIDES, SAMPLES = ("left", "right"), 60
 DOWN = np.diag([1.0, -1.0, -1.0])  # the foot's axes in an ankle link whose z points down
@@ -60,3 +61,17 @@ def test_a_torque_of_the_feet_is_a_moment_arm_of_the_load() -> None:
     seats = {side: Seat(side, np.zeros(3), DOWN, "", True, 0.0) for side in SIDES}
     arms = moment_arms(seats, standing(300.0, 3.0), {side: np.eye(4) for side in SIDES})
     np.testing.assert_allclose(arms, np.tile([0.0, 0.01, 0.0], (SAMPLES, 1)), atol=1e-12)
+
+
+def test_axes_that_are_the_feets_are_seen_from_the_ankle() -> None:
+    """An ankle that is turned in the world, on a foot whose axes are turned in it."""
+    ankle, upright = (Rotation.from_rotvec(turn).as_matrix() for turn in ([0.2, -0.1, 0.4], [0.0, 0.0, 0.7]))
+    pose = np.eye(4)
+    pose[:3, :3] = ankle
+    seat = Seat("left", np.zeros(3), np.eye(3), f"at the ankle's origin, in {ORIGIN}", True, 0.0, 0.05)
+    sole = SimpleNamespace(upright=upright)
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    for turn, words in ((np.eye(3), SOLE_AXES), (quarter, "axes turned by right angles")):
+        found = _turned({"left": seat}, {"left": sole}, {"left": pose}, turn)["left"]  # type: ignore[dict-item]
+        np.testing.assert_allclose(ankle @ found.rotation, upright @ turn, atol=1e-12)
+        assert found.reason == f"at the ankle's origin, in {words}"

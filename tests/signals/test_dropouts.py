@@ -118,3 +118,10 @@ def test_of_joints_only_positions_are_looked_at() -> None:
     assert [name for name in names if np.isnan(log.column(name)).any()] == names[:1]
     whole = MotionLog("whole", TIME, dict.fromkeys(names, ANGLE))
     assert without_dropouts(whole) is whole
+
+
+def test_a_load_of_either_sign_has_a_size() -> None:
+    """What pulls along one channel as much as it pushes along another is no zero."""
+    read, gone = dropping(LOAD)
+    log = MotionLog("signs", TIME, {"wrench.left.force.x": -read, "wrench.left.force.z": read} | OTHER)
+    assert np.isnan(without_dropouts(log).column("wrench.left.force.z")[gone & (TIME < 39.5)]).all()

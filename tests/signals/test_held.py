@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from plantar.logs.motion_log import MotionLog
 from plantar.signals.held import (
+    held_in,
     held_samples,
     without_held,
 )
@@ -150,3 +151,16 @@ def test_one_number_of_an_orientation_that_stops_spoils_its_length() -> None:
     emptied = without_held(MotionLog("one", TIME, dict(zip(names, numbers.T, strict=True))))
     np.testing.assert_array_equal(np.isnan(emptied.column(names[1])), still)
     assert not np.isnan(emptied.stack([names[0], names[2], names[3]])).any()
+
+
+def test_sensors_of_forces_have_a_full_scale_and_orientations_none() -> None:
+    """A torque is clipped for moments; a number of a quaternion may well be largest for as long."""
+    beat = WAVE * (1 + 0.3 * np.sin(0.17 * TIME)) + 3 * np.sin(25 * TIME)
+    clipped = np.minimum(beat, 0.6 * beat.max())
+    torque, number = "wrench.left.torque.x", "imu.chest.orientation.x"
+    log = MotionLog("clipped", TIME, {torque: clipped, "wrench.left.force.z": 300 + WAVE, number: clipped} | {
+        f"imu.chest.orientation.{axis}": WAVE for axis in "wyz"})  # fmt: skip
+    with_scale, without_scale = (held_samples(clipped, PERIOD, full_scale=scale) for scale in (True, False))
+    assert with_scale.sum() > without_scale.sum()
+    np.testing.assert_array_equal(held_in(log, torque), with_scale)
+    assert held_in(log, number).sum() <= without_scale.sum()

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from biped import record, sway, times
 from plantar.logs.motion_log import MotionLog
-from plantar.signals.resampling import evenly_sampled, interpolate, sampling, shifted, without_holes
+from plantar.signals.resampling import evenly_sampled, interpolate, is_even, sampling, shifted, without_holes
 from plantar.signals.segments import runs
 
 PERIOD = 0.005
@@ -135,3 +135,25 @@ def test_short_holes_are_filled_and_a_tenth_of_a_second_stays_a_hole() -> None:
     assert np.isnan(column[2000:2020]).all()
     assert np.isnan(column).sum() == 20
     assert {note.code for note in filled.notes} == {"holes_filled"}
+
+
+def test_a_hole_at_which_a_quaternion_changes_its_sign_is_filled_the_short_way() -> None:
+    turns = Rotation.from_rotvec(np.outer(0.3 + 0.2 * tone(0.5), [0, 0, 1])).as_quat(scalar_first=True)
+    turns[TIME[1002] < TIME] *= -1
+    columns = dict(zip((f"imu.chest.orientation.{axis}" for axis in "wxyz"), turns.T.copy(), strict=True))
+    for values in columns.values():
+        values[1000:1006] = np.nan
+    filled = without_holes(MotionLog("a", TIME, columns))
+    found = np.column_stack([*filled.columns.values()])[1000:1006]
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1.0, atol=1e-3)
+
+
+def test_samples_too_near_to_each_other_are_not_even() -> None:
+    """As those that come late, and are followed by one at its time."""
+    time = TIME.copy()
+    time[1000] += 0.3 * PERIOD
+    assert not is_even(MotionLog("late", time, {}))
+    time = TIME.copy()
+    time[1000:] -= 0.6 * PERIOD
+    assert not is_even(MotionLog("near", time, {}))
+    assert is_even(MotionLog("even", TIME, {}))

@@ -102,3 +102,15 @@ def test_columns_with_the_same_holes_are_filtered_as_each_alone() -> None:
     for name, values in columns.items():
         alone = thinned(MotionLog("log", log.time, {name: values})).column(name)
         np.testing.assert_array_equal(together.column(name), alone)
+
+
+def test_columns_stay_in_their_order_whatever_holes_they_have() -> None:
+    log = log_of(1000.0, hip=tone(1.0), knee=tone(2.0), ankle=tone(3.0), toe=tone(4.0))
+    holes = {name: log.column(f"joint.{name}.position").copy() for name in ("knee", "toe")}
+    for values in holes.values():
+        values[1000:3000] = np.nan
+    holed = log.with_columns({f"joint.{name}.position": values for name, values in holes.items()})
+    thin = thinned(holed)
+    assert list(thin.columns) == list(holed.columns)
+    for name in thin.columns:
+        assert np.isnan(thin.column(name)).any() == any(part in name for part in holes)

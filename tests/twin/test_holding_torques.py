@@ -33,7 +33,9 @@ def test_weight_less_what_the_ground_carries(robot: RobotModel, sign: float) -> 
     left = robot.feet["left"]
     robot = replace(robot, feet={**robot.feet, "left": replace(left, wrench=replace(left.wrench, sign=sign))})
     log = standing(robot, sign * FORCE)
+    before = robot.model.gravity.linear.copy()
     held = holding_torques(robot, log)
+    np.testing.assert_array_equal(robot.model.gravity.linear, before)
     model, data = robot.model.copy(), robot.model.createData()
     carrier, seat = robot.frame(left.wrench.placement)
     first = log.positions(robot)[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import MagicMock, patch
@@ -10,10 +11,11 @@ import numpy as np
 import pytest
 
 from plantar.dynamics.stream import RowFactor
+from plantar.robot.model import RobotModel
 from plantar.whole_body import folds as folding
 from plantar.whole_body import regularised_fit
 from plantar.whole_body.folds import Folds, pooled
-from plantar.whole_body.joints import _judge
+from plantar.whole_body.joints import _above_sensors, _judge
 from plantar.whole_body.regularised_fit import (
     REGULARISATIONS,
     HeldOutError,
@@ -190,3 +192,12 @@ def test_larger_weights_are_tried_until_one_misses_three_times_the_least(worst: 
     with patch.object(regularised_fit, "normal_of"):
         found = problem._errors({}, lambda said: None)
     assert [one.regularisation for one in found] == list(REGULARISATIONS[:tried])
+
+
+def test_zeros_of_a_feet_s_sensors_count_in_the_joints_above_them(robot: RobotModel) -> None:
+    """Of a robot that is bolted down nothing follows from its feet."""
+    above = {f"{foot}_{joint}" for foot in ("left", "right") for joint in (
+        "leg_x", "leg_y", "leg_z", "ankle_pitch", "ankle_roll")}  # fmt: skip
+    assert above <= _above_sensors(robot)
+    assert "neck" not in _above_sensors(robot)
+    assert _above_sensors(replace(robot, base="fixed")) == frozenset()

@@ -12,6 +12,7 @@ import pinocchio as pin
 import pytest
 
 import small_biped
+from kept_texts import assert_as_kept, lines_of
 from plantar.dynamics import Contact, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
@@ -341,3 +342,8 @@ def test_rows_that_are_exactly_zero_leave_the_others_their_weight(
     assert "unexcited" in {note.code for note in found.notes}
     values = np.array([[row.value, row.cad] for row in found.inertial_parameters])
     assert np.isfinite(values).all()
+
+
+def test_all_of_a_result_is_as_it_is_kept(result: DynamicsResult) -> None:
+    text = lines_of(result.to_dict(), "created", "plantar", "robot_model", "path", "sha256")
+    assert_as_kept(f"{text}{result}", Path(__file__).parent / "kept" / "inertia.txt", share=1e-4, least=1e-6)

@@ -13,6 +13,7 @@ import pytest
 
 import example_robots
 import small_biped
+from kept_texts import assert_as_kept, lines_of
 from plantar.dynamics import base_parameters, model_parameters
 from plantar.dynamics.equation import Equation
 from plantar.errors import DataError, LogError, RobotError
@@ -340,3 +341,8 @@ def test_a_joint_that_slides_has_forces(tmp_path: Path) -> None:
     assert (round(viscous.value, 1), viscous.unit) == (VISCOUS, "N.s/m")
     assert [row.unit for row in found.parameters] == ["N.s/m", "N", "N"]
     assert found.score("up and down", "lift").unit == "N"
+
+
+def test_all_of_a_result_is_as_it_is_kept(result: DynamicsResult) -> None:
+    text = lines_of(result.to_dict(), "created", "plantar", "robot_model", "path", "sha256")
+    assert_as_kept(f"{text}{result}", Path(__file__).parent / "kept" / "joints.txt", share=1e-4, least=1e-6)

@@ -49,7 +49,7 @@ struct FootEstimator::State {
   AttitudeFilter filter;
   SlipGate slip;
   bool gyroscope = false;
-  double last_quaternion[4] = {1.0, 0.0, 0.0, 0.0}, last_rate[3] = {};
+  double last_quaternion[4] = {}, last_rate[3] = {};
   std::vector<FootKinematics> motion;
   std::vector<std::uint32_t> bad;
   std::vector<bool> was_bad;

@@ -22,6 +22,7 @@ from plantar.notes import Note
 
 SAFE_CONDITION = 1e10  # below this estimate every parameter is excited and no singular values are needed
 RANK_TOLERANCE = 1e-10  # of the largest singular value, columns scaled to one
+ROUNDING = 1e-13  # of the largest column: what sums that ought to be zero leave of a smaller one
 UNEXCITED_SHARE = 0.05  # of a unit parameter that must lie in the unexcited directions to be named
 
 Rows = Literal["base", "all"]
@@ -214,7 +215,7 @@ def solve_triangle(triangle: Array) -> TriangleSolution:
     """Solve a triangle whose last column is the measured side; the smallest of the values that fit."""
     r, z = triangle[:-1, :-1], triangle[:-1, -1]
     scale = np.linalg.norm(r, axis=0)
-    scale[scale == 0] = 1.0
+    scale[scale <= ROUNDING * scale.max(initial=0.0)] = 1.0
     unit = r / scale
     n = len(z)
     if np.all(np.abs(np.diag(unit)) > 1 / SAFE_CONDITION):

@@ -107,5 +107,7 @@ def test_an_element_is_seen_whole_where_it_slides_back(
 def test_of_feet_that_step_and_springs_nothing_is_said_about_sliding_back(
     monkeypatch: pytest.MonkeyPatch, walks: Any
 ) -> None:
-    assert slid_back(fit_of(), walks(1.0)) == np.inf
+    stands = replace(fit_of(), initial_states={"walk": np.zeros(1)})
+    assert slid_back(stands, walks(1.0)) == np.inf
+    assert slid_back(stands, walks(1.0, steps=False)) == 0.0
     assert slid_back(fit_of("kelvin_voigt"), standing(monkeypatch, 0.0, 1.8)) == np.inf

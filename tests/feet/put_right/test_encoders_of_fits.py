@@ -12,6 +12,7 @@ import pytest
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import Array
+from plantar.feet import identify
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.place.imu_mount import ImuTurn
@@ -188,4 +189,29 @@ def test_the_note_says_how_the_logs_are_read_now() -> None:
     assert after.sensor_delay.note.text == (
         "wrenches are +5.0 ms late; fits of the standing feet then showed encoders +0.6 ms late beside the IMU, "
         "and all is read so (wrenches: left +5.0, right +7.0 ms)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("shown", "again"), [(None, False), (Late(0.0002, 0.0001), False), (Late(0.0021, 0.0003), True)]
+)
+def test_feet_are_fitted_again_where_they_show_another_delay_than_they_were_read_at(
+    shown: Late | None, again: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """First at none, as Newton's law says nothing clear; what is fitted again is read as the fits show it."""
+
+    def as_read(ready: Any, late: Late) -> Any:
+        return SimpleNamespace(sensor_delay=SimpleNamespace(encoders=late.value), std=late.std, told=False)
+
+    monkeypatch.setattr(identify, "read_at", as_read)
+    monkeypatch.setattr(identify, "retold", lambda ready: SimpleNamespace(**vars(ready) | {"told": True}))
+    monkeypatch.setattr(identify, "_fitted_feet", lambda ready, _: {"left": ready.sensor_delay.encoders})
+    asked: list[Any] = []
+    monkeypatch.setattr(identify, "encoders_shown", lambda *told: asked.append(told) or shown)
+    said: list[str] = []
+    ready, feet = identify._with_encoders_right(SimpleNamespace(), NEWTON, said.append)  # type: ignore[arg-type]
+    assert asked == [({"left": 0.0}, NEWTON, 0.0)]
+    assert feet == {"left": shown.value if again and shown else 0.0}
+    assert (ready.std, ready.told, len(said)) == (
+        (shown.std, True, 1) if again and shown else (NEWTON.std, False, 0)
     )

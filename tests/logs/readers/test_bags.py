@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from mcap_records import mcap_of_chunk
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log, read_limit
+from plantar.logs.readers.ros.joint_topics import joint_rank
 from plantar.logs.save import save_log
 from plantar.robot.model import RobotModel
 
@@ -295,3 +298,15 @@ def test_a_bag_of_many_bombs_is_stopped_by_its_own_size(
     monkeypatch.setattr(read_limit, "RATIO", 0)
     with pytest.raises(LogError, match="unpacks to more than 1 kB"):
         open_log(path)
+
+
+def test_of_topics_the_one_with_most_joints_is_measured_and_then_none_that_is_wanted() -> None:
+    def topic(name: str, *joints: str) -> Any:
+        return SimpleNamespace(name=name, series={0: SimpleNamespace(names=joints)})
+
+    most, other, own, wanted = (
+        topic("/joint_command", "a", "b", "c"), topic("/arm", "a", "b"), topic("/joint_states", "a", "b"),
+        topic("/desired/joint_states", "a", "b"),
+    )  # fmt: skip
+    found = sorted((other, wanted, own, most), key=lambda one: joint_rank(one, None))
+    assert found == [most, own, other, wanted]

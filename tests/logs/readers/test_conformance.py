@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from pathlib import Path
 
 import numpy as np
@@ -57,3 +58,19 @@ def test_every_format_gives_the_same_result(original: MotionLog, tmp_path: Path)
         assert values.keys() == results["csv"].keys()
         for key, value in values.items():
             assert value == pytest.approx(results["csv"][key], rel=1e-6), (name, key)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in WRITERS if name not in ("hrpsys", "yarp", "astate", "sqlite3")]
+)
+def test_an_ending_may_be_written_in_capitals(name: str, tmp_path: Path) -> None:
+    path, robot = written(name, record(sway("log", duration=2.0)), tmp_path)
+    large = path.rename(path.with_name(path.name.upper()))
+    assert len(open_log(large, robot).columns) > 20
+
+
+def test_a_packed_table_may_end_in_capitals(original: MotionLog, tmp_path: Path) -> None:
+    path, robot = written("csv", original, tmp_path)
+    large = tmp_path / "LOG.CSV.GZ"
+    large.write_bytes(gzip.compress(path.read_bytes()))
+    assert len(open_log(large, robot)) == len(original)

@@ -301,3 +301,26 @@ def test_joints_without_names_have_the_urdfs_order_where_their_number_agrees(tmp
     for wrong, known in ((count + 1, robot), (count, None)):
         with pytest.raises(LogError, match=f"does not name its {wrong} joints"):
             joints_for(wrong, known, LOG, notes)
+
+
+@pytest.mark.parametrize(
+    ("size", "chunks", "fine"), [(5, None, True), (6, None, False), (3, (6,), False), (3, (2, 2), True)]
+)
+def test_how_long_a_name_in_a_mat_file_may_be(
+    size: int, chunks: tuple[int, ...] | None, fine: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also in the pieces that it is unpacked in."""
+    monkeypatch.setattr(robot_logger, "NAME_LIMIT", 5)
+
+    class Cell:
+        def __init__(self) -> None:
+            self.size, self.chunks = size, chunks
+
+        def __getitem__(self, _: object) -> np.ndarray:
+            return np.array([97, 98])
+
+    if fine:
+        assert robot_logger._text(Cell()) == "ab"
+    else:
+        with pytest.raises(ValueError, match="too long"):
+            robot_logger._text(Cell())

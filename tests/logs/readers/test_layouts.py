@@ -94,3 +94,12 @@ def test_what_some_messages_lack_is_no_number_there(frame: str) -> None:
     assert np.isnan(position[1::2]).all()
     np.testing.assert_array_equal(series.column("position", 1)[order], position[:, 1])
     assert np.isnan(series.column("effort", 0)).tolist() == 5 * [True]
+
+
+def test_a_message_has_the_fields_that_are_filled_and_named() -> None:
+    found = layout_of(JOINT_STATE, "cdr", cdr_joint_state(["hip"], [1.5]))
+    assert [(name, size) for name, _, size in found.fields] == [("position", 1)]
+    head = b"\0\1\0\0" + struct.pack("<iI", 12, 345) + struct.pack("<I", 2) + b"b\0" + bytes(2)
+    imu = layout_of(IMU, "cdr", head + struct.pack("<37d", *range(37)))
+    named = ["orientation", "orientation_covariance", "angular_velocity", "linear_acceleration"]
+    assert [name for name, *_ in imu.fields] == named

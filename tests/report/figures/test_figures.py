@@ -52,6 +52,16 @@ def test_composed_motions_follow_each_other(tracks: tuple[Track, ...]) -> None:
         np.testing.assert_allclose(starts, 3.995 * np.arange(len(FIT)))
 
 
+def test_a_motion_begins_with_the_foot_that_was_seen_first(tracks: tuple[Track, ...]) -> None:
+    left, right = (
+        next(t for t in tracks if (t.motion, t.foot) == ("tilt3", foot)) for foot in ("left", "right")
+    )
+    later = replace(right, time=right.time + 2.0)
+    panels = plots.torques([left, later], ["tilt3"]).axes[:2]
+    starts = [panel.lines[0].get_xdata()[0] for panel in panels]
+    np.testing.assert_allclose(starts, [0.0, 2.0], atol=1e-9)
+
+
 def test_what_was_left_out_is_grey(tracks: tuple[Track, ...]) -> None:
     (track,) = (t for t in tracks if (t.motion, t.foot) == ("tilt3", "left"))
     used = np.ones(track.time.size, bool)

@@ -1,0 +1,141 @@
+"""Careless changes that only whole outputs show, or that went unnoticed before these were kept."""
+
+from __future__ import annotations
+
+from mutant import Mutant
+
+KEPT = (
+    Mutant(
+        "sensors/moments/bent_joints.py",
+        "a deviation passes for an interval",
+        "{1e3 * NORMAL95 * stds[joint]:.3f}",
+        "{1e3 * stds[joint]:.3f}",
+        ("sensors/test_kept.py",),
+    ),
+    Mutant(
+        "signals/held.py",
+        "a torque has no full scale, and an orientation one",
+        'full_scale=".orientation." not in column',
+        'full_scale=".orientation." in column',
+        ("signals/test_held.py",),
+    ),
+    Mutant(
+        "design/soft_feet.py",
+        "weight tips what goes up and down",
+        "inertia * s**2 - (weight if axis else 0.0)",
+        "inertia * s**2 - weight",
+        ("design/test_soft_feet.py",),
+    ),
+    Mutant(
+        "signals/thinning.py",
+        "columns come in the order of their holes",
+        "return {name: columns[name] for name in read}",
+        "return columns",
+        ("signals/test_thinning.py",),
+    ),
+    Mutant(
+        "dynamics/fit.py",
+        "all base parameters take a freedom, excited or not",
+        "equations - solution.rank",
+        "equations - len(base)",
+        ("dynamics/test_fit.py",),
+    ),
+    Mutant(
+        "dynamics/fit.py",
+        "a column of rounding is excited",
+        "scale[scale <= ROUNDING * scale.max(initial=0.0)]",
+        "scale[scale == 0]",
+        ("dynamics/test_fit.py",),
+    ),
+    Mutant(
+        "twin/holding_torques.py",
+        "gravity is turned in the caller's robot",
+        "model = robot.model.copy()",
+        "model = robot.model",
+        ("twin/test_holding_torques.py",),
+    ),
+    Mutant(
+        "logs/readers/tables/csv_text.py",
+        "LOG.CSV.GZ is no packed file",
+        'self._path.name.lower().endswith(".gz")',
+        'self._path.name.endswith(".gz")',
+        ("logs/readers/test_conformance.py",),
+    ),
+    Mutant(
+        "cli/online.py",
+        "a cutoff on the command line is not heard",
+        "wrench_delay=wrench_delay, cutoff=cutoff)",
+        "wrench_delay=wrench_delay)",
+        ("cli/test_kept.py",),
+    ),
+    Mutant(
+        "model_selection/model_fit.py",
+        "offsets are less well known",
+        "np.ones(len(covariance) - len(scale))])",
+        "1.1 * np.ones(len(covariance) - len(scale))])",
+        ("feet/test_kept.py",),
+    ),
+    Mutant(
+        "motions/manual.py",
+        "a hand's tones have one phase",
+        " + phase * (place + 1))",
+        ")",
+        ("motions/test_kept.py",),
+    ),
+    Mutant(
+        "cores.py",
+        "work of its own cores shares those around it",
+        "around is not None and cores is None and",
+        "around is not None and",
+        ("test_cores.py",),
+    ),
+    Mutant(
+        "report/figures/plots.py",
+        "a motion begins with the foot seen last",
+        "start = min(float(track.time[0])",
+        "start = max(float(track.time[0])",
+        ("report/figures/test_figures.py",),
+    ),
+    Mutant(
+        "feet/fit/half_turns.py",
+        "feet that step slide back",
+        "        if recording.stances[fit.foot] is not None:\n            return np.inf\n        starts",
+        "        starts",
+        ("feet/fit/test_half_turns.py",),
+    ),
+    Mutant(
+        "logs/readers/ros/joint_topics.py",
+        "a wish with fewer joints comes after what is measured",
+        "return -len(names), bool(WANTED.search(topic.name)), other",
+        "return bool(WANTED.search(topic.name)), -len(names), other",
+        ("logs/readers/test_bags.py",),
+    ),
+    Mutant(
+        "fleet/statistics/changes.py",
+        "a trend that goes on begins anew",
+        "first=min(before.first, change.first)",
+        "first=change.first",
+        ("fleet/test_kept.py",),
+    ),
+    Mutant(
+        "twin/recording.py",
+        "the truth does not say how the floor rubs",
+        '        "friction": physics.friction,\n',
+        "",
+        ("twin/test_kept.py",),
+    ),
+    Mutant(
+        "signals/resampling.py",
+        "samples that are too near are even",
+        "np.abs(np.diff(log.time) - log.period)",
+        "(np.diff(log.time) - log.period)",
+        ("signals/test_resampling.py",),
+    ),
+    Mutant(
+        "feet/assumptions.py",
+        "a bush that is to the left is to the right",
+        '("roll", "y", 1.0)',
+        '("roll", "y", -1.0)',
+        ("feet/test_kept.py",),
+    ),
+)
