@@ -278,6 +278,11 @@ def test_files_of_another_kind_are_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(LogError, match="directory without logs"):
         open_log(tmp_path / "empty")
+    (tmp_path / "empty" / "sway.csv").touch()
+    with pytest.raises(
+        LogError, match=r"is a directory, no log \(valid: its files, such as .*empty/\*\.csv;"
+    ):
+        open_log(tmp_path / "empty")
 
 
 def test_a_decompression_bomb_is_left_out(tmp_path: Path) -> None:

@@ -59,9 +59,14 @@ def dumps(root: Path) -> list[Path]:
     for depth in range(DEPTH):
         found += sorted(root.glob("*/" * depth + "data.log"))[:PORT_LIMIT]
     if not found:
-        raise LogError(
-            "is a directory without logs", path=root, valid="a ROS bag, or YARP dumps with data.log"
-        )
+        valid = "a ROS bag, or YARP dumps with data.log"
+        if endings := sorted({"".join(file.suffixes[-2:]) for file in root.iterdir() if file.is_file()}):
+            raise LogError(
+                "is a directory, no log",
+                path=root,
+                valid=f"its files, such as {root / f'*{endings[0]}'}; {valid}",
+            )
+        raise LogError("is a directory without logs", path=root, valid=valid)
     return found
 
 
