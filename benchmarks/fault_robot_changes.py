@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+import tempfile
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pinocchio as pin
+
 from fault_case import FEET, Case, Change, Table
+from plantar.logs.motion_log import wrench_columns
+from plantar.robot.model import load_robot
 
 
 def frame(part: str, key: str, axis: int, by: float, *feet: str) -> Change:
@@ -154,6 +161,38 @@ def bent_ankles(compliance: float) -> Change:
             return table
 
         return said.with_tables(each)
+
+    return change
+
+
+def untold_gears(compliance: float) -> Change:
+    """All joints of the legs read before gears that bend [rad/(N.m)], which nobody says; torques by Pinocchio."""
+
+    def change(case: Case) -> Case:
+        with tempfile.TemporaryDirectory() as folder:
+            robot = load_robot(case.write(Path(folder))[0])
+        model, data = robot.model, robot.model.createData()
+        feet = [(robot.frame(foot.wrench.placement), foot.wrench) for foot in robot.feet.values()]
+        legs = [joint for foot in FEET for joint in case.legs[foot]]
+
+        def each(table: Table) -> Table:
+            angles = np.column_stack([table[f"joint.{joint}.position"] for joint in robot.joint_names])
+            read = [
+                sensor.sign * np.column_stack([table[name] for name in wrench_columns(sensor.name)])
+                for _, sensor in feet
+            ]
+            torques = np.zeros((len(angles), model.nv))
+            for row, own in enumerate(angles):
+                pin.computeJointJacobians(model, data, robot.configuration(own))
+                for ((joint, placement), _), wrenches in zip(feet, read, strict=True):
+                    jacobian = pin.getJointJacobian(model, data, joint, pin.LOCAL)
+                    torques[row] += (placement.inverse().action @ jacobian).T @ wrenches[row]
+            names = {f"joint.{joint}.position": model.idx_vs[model.getJointId(joint)] for joint in legs}
+            return table | {
+                name: table[name] - compliance * torques[:, place] for name, place in names.items()
+            }
+
+        return case.with_tables(each)
 
     return change
 

@@ -23,6 +23,7 @@ from fault_robot_changes import (
     soles,
     trunk_mass,
     turned_axis,
+    untold_gears,
     urdf,
     without_arm,
 )
@@ -89,6 +90,8 @@ MODELS = (
     Fault("trunk +10 kg", "model", trunk_mass(10.0), MODEL),
     Fault("an arm missing", "model", urdf(without_arm), MODEL),
     Fault("ankles bend by 1e-4 rad/(N·m), said", "model", bent_ankles(1e-4), ("joint compliance",)),
+    *(Fault(f"legs' joints bend by {by:.0e} rad/(N·m), unsaid", "model", untold_gears(by), ("bend", "joint_misread"))
+      for by in (5e-5, 1e-4, 2e-4)),
     Fault("shanks 2 cm longer", "model", longer_shanks(0.02), MODEL),
     Fault("left knee's axis mirrored", "model", turned_axis(KNEE, _mirrored, "left"), MODEL),
     Fault("ankle pitch axes mirrored", "model", turned_axis(ANKLE_PITCH, _mirrored, *FEET), MODEL),

@@ -101,7 +101,7 @@ def of_moments(robot: RobotModel, fit: MomentFit | None) -> dict[str, object]:
     gains = torque_gains(robot, fit)
     return {
         "fit": fit, "gains": gains, "gain notes": torque_gain_notes(gains), "turns": sensor_turn_notes(robot, fit),
-        "delays": torque_delay_notes(fit), "bending": (bending := joint_bending(robot, fit, steps=False)),
+        "delays": torque_delay_notes(fit), "bending": (bending := joint_bending(robot, fit)),
         "bending notes": joint_bending_notes(robot, bending),
     }  # fmt: skip
 

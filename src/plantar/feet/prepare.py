@@ -132,7 +132,7 @@ def prepare_checked(
     steps, balances = any(map(has_steps, found.recordings)), found.moments
     # Legs that may bend hide what torques read too much: they are asked only where they show it.
     moments = moments_of(robot, balances, steps, BENDING)
-    bending = joint_bending(robot, moments, steps)
+    bending = joint_bending(robot, moments)
     if bending.found:
         del found
         return_freed(size)

@@ -21,11 +21,8 @@ from plantar.sensors.moments.sensor_errors import compliance_columns
 
 BENT = "joints_bend"
 # rad, with the robot's weight at a metre: deviation of what stiff joints seem to bend by. A URDF's legs that are a
-# little too short do as much.
+# little too short do as much, and 23 simulated robots under wrong URDFs did within it.
 USUAL = 0.004
-# Likewise of a robot that only stands, whose horizontal forces are small: 12 simulated ones with stiff joints, most of
-# them under wrong URDFs, seemed to bend by 0.007 rms on the mean of their joints, by 0.011 at most.
-USUAL_STANDING = 0.006
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
 
@@ -59,9 +56,8 @@ class JointBending(NamedTuple):
         return cls(np.zeros(joints), np.full((joints, joints), variance))
 
 
-def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> JointBending:
-    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs; `steps`: whether
-    feet step in some logs.
+def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
+    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs.
 
     Compliances are as large as each other within their own size, which the moments tell; the robot file's, where that
     is larger.
@@ -73,7 +69,7 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> Join
     values, count = fit.values[columns], len(legs)
     load, alike = robot.mass * GRAVITY, np.ones((count, count)) + np.eye(count)
     parts = [Part(one.covariance[columns, columns], one.freedom) for one in fit.parts]
-    parts.append(Part(((USUAL if steps else USUAL_STANDING) / load) ** 2 * alike, MOST_FREEDOM))
+    parts.append(Part((USUAL / load) ** 2 * alike, MOST_FREEDOM))
     covariance = np.sum([one.covariance for one in parts], axis=0)
     weights = np.linalg.solve(covariance, np.ones(count))
     weights /= weights.sum()
@@ -88,9 +84,7 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None, steps: bool) -> Join
     gives_way = mean > 0 and bool((values > -SHOWN * np.sqrt(np.diag(covariance))).all())
     # Of all joints together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
     own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in parts]
-    # Logs that tell it less well follow what else is wrong: one short motion of a stiff robot seems to bend its knees.
-    known = sum(float(one.covariance[0, 0]) for one in own[:-1]) < (USUAL_STANDING / load) ** 2
-    if gives_way and known and is_wrong(np.array([mean]), own, [0]):
+    if gives_way and is_wrong(np.array([mean]), own, [0]):
         size = max(size, min(SIZES / load, key=unlikely))
     if not size:
         return told._replace(mean=mean, std=std)
