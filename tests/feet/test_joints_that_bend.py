@@ -50,7 +50,7 @@ def test_numbers_are_those_of_the_rubber(twin: RobotModel, found: FeetResult) ->
             assert row.interval95 is not None
             truth = getattr(PAPER[foot], f"{axis}_stiffness")
             assert row.interval95[0] < truth < row.interval95[1]
-            assert abs(row.value - truth) < 0.5 * COMPLIANCE * truth**2
+            assert abs(row.value - truth) < 0.6 * COMPLIANCE * truth**2
 
 
 def test_the_table_of_what_may_be_wrong_says_how_far_joints_bend(found: FeetResult) -> None:
