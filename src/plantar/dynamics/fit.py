@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from plantar import _core
 from plantar.choices import one_of
-from plantar.conventions import Array
+from plantar.conventions import ROUNDING, Array
 from plantar.dynamics.base_parameters import BaseParameters, base_parameters
 from plantar.dynamics.equation import BASE_ROWS, Equation
 from plantar.dynamics.motion import pinocchio_motion
@@ -22,7 +22,6 @@ from plantar.notes import Note
 
 SAFE_CONDITION = 1e10  # below this estimate every parameter is excited and no singular values are needed
 RANK_TOLERANCE = 1e-10  # of the largest singular value, columns scaled to one
-ROUNDING = 1e-13  # of the largest column: what sums that ought to be zero leave of a smaller one
 UNEXCITED_SHARE = 0.05  # of a unit parameter that must lie in the unexcited directions to be named
 
 Rows = Literal["base", "all"]
