@@ -21,7 +21,7 @@ from plantar.sensors.moments.sensor_errors import compliance_columns
 
 BENT = "joints_bend"
 # rad, with the robot's weight at a metre: deviation of what stiff joints seem to bend by. A URDF's legs that are a
-# little too short do as much, and 23 simulated robots under wrong URDFs did within it.
+# little too short do as much; 24 simulated robots under wrong URDFs seemed to by no more than this and noise explain.
 USUAL = 0.004
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
