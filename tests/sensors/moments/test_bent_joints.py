@@ -26,8 +26,7 @@ from plantar.sensors.moments.bent_joints import (
     put_straight,
 )
 from plantar.sensors.moments.law_bending import bending_torques, by_bending
-from plantar.sensors.moments.law_rows import BAND
-from plantar.sensors.moments.law_rows import law_rows
+from plantar.sensors.moments.law_rows import BAND, law_rows
 from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
 from plantar.sensors.moments.moment_fit import MomentFit, Part
 from plantar.sensors.moments.sensor_errors import BENDING, compliance_columns, prior_deviations
