@@ -51,15 +51,17 @@ def main() -> None:
         "--exact", action="store_true", help="sensors and robot file without errors, no sliding"
     )
     parser.add_argument("--walks", action="store_true", help="walks instead of motions on standing feet")
+    parser.add_argument("--gears", type=float, default=0.0, help="by which joints bend unseen [rad/(N.m)]")
     parser.add_argument("--keep", type=Path, help="folder in which logs stay, and are found again")
     chosen = parser.parse_args()
     kept = chosen.keep or Path(tempfile.mkdtemp(prefix="plantar-"))
     rows, kind = list[Row](), ("_exact" if chosen.exact else "") + ("_walks" if chosen.walks else "")
+    kind += f"_{chosen.gears:g}" if chosen.gears else ""
     for name in chosen.robots:
         for seed in range(chosen.first, chosen.first + chosen.worlds):
             folder = kept / f"{name}_{seed}{kind}"
             if not (folder / "truth.json").exists():
-                make(name, seed, chosen.exact, chosen.walks, folder)
+                make(name, seed, chosen.exact, chosen.walks, chosen.gears, folder)
             found = score(folder, name, seed, WALKS if chosen.walks else MOTIONS)
             rows += found
             for row in found:
@@ -67,7 +69,7 @@ def main() -> None:
     print(_summary(rows))
 
 
-def make(name: str, seed: int, exact: bool, walks: bool, folder: Path) -> None:
+def make(name: str, seed: int, exact: bool, walks: bool, gears: float, folder: Path) -> None:
     """Logs, robot file and truth of one world."""
     folder.mkdir(parents=True, exist_ok=True)
     robot = real_robot(name, folder)
@@ -76,7 +78,7 @@ def make(name: str, seed: int, exact: bool, walks: bool, folder: Path) -> None:
     drawn = sensors.draw_sensors(robot, lab, seed, 200.0 if exact else None)
     stance = Stance(robot)
     for motion in WALKS if walks else MOTIONS:
-        played = _walk(robot, motion, rubber) if walks else _flat(stance, motion, seed, rubber)
+        played = _walk(robot, motion, rubber, gears) if walks else _flat(stance, motion, seed, rubber, gears)
         if played is not None:
             columns = sensors.record(robot, played, lab, drawn, seed, motion)
             sensors.write(columns, str(folder / f"{motion}.csv"))
@@ -87,21 +89,21 @@ def make(name: str, seed: int, exact: bool, walks: bool, folder: Path) -> None:
     (folder / "truth.json").write_text(json.dumps(facts))
 
 
-def _flat(stance: Stance, motion: str, seed: int, rubber: dict[str, Rubber]) -> Motion | None:
+def _flat(stance: Stance, motion: str, seed: int, rubber: dict[str, Rubber], gears: float) -> Motion | None:
     for size in SIZES:
         try:
             made = plan(stance, motion, DURATION, seed, size)
         except ValueError:
             continue
-        played = play(stance.robot, made.start, made.targets, rubber)
+        played = play(stance.robot, made.start, made.targets, rubber, gears=gears)
         if played.tilt < FLAT:
             return played
     return None
 
 
-def _walk(robot: RobotModel, name: str, rubber: dict[str, Rubber]) -> Motion | None:
+def _walk(robot: RobotModel, name: str, rubber: dict[str, Rubber], gears: float) -> Motion | None:
     try:
-        return walked(robot, name, rubber)
+        return walked(robot, name, rubber, gears)
     except MotionError as error:
         print(error, file=sys.stderr)
         return None

@@ -24,6 +24,7 @@ SETTLE = 3.0  # s, in which the servos hold the first row
 SOLE, LIFTED_SOLE = (0.05, 1e-3), (0.02, 4e-4)
 SERVO = 20.0  # times weight times height [N·m/rad]
 SERVO_DAMPING = 0.02  # s, over the stiffness
+GEAR_DAMPING = 0.002  # s, likewise, of gears that bend
 ROTOR = 1e-4  # s², inertia over the stiffness
 # Stiff beside any rubber: solref and solimp. Light soles sink more: stiffer under these.
 FLOOR, HARD_FLOOR, PARTS = (-2.5e5, -1e3), (-5e5, -1.4e3), 2
@@ -55,10 +56,16 @@ Leads = Callable[[mujoco.MjModel], Callable[[int, mujoco.MjData], Array]]
 
 
 def play(
-    robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, Rubber], leads: Leads | None = None
+    robot: RobotModel,
+    start: Array,
+    targets: Array,
+    rubber: Mapping[str, Rubber],
+    leads: Leads | None = None,
+    gears: float = 0.0,
 ) -> Motion:
-    """Play `targets` (n, joints) at 1000 Hz from the root's pose `start` (7,) x y z, w x y z."""
-    model = _model(robot, rubber, lifted=leads is not None)
+    """Play `targets` (n, joints) at 1000 Hz from the root's pose `start` (7,) x y z, w x y z; `gears` [rad/(N·m)]: by
+    which every joint bends beyond its motor, where it is read."""
+    model = _model(robot, rubber, lifted=leads is not None, gears=gears)
     lead = None if leads is None else leads(model)
     data = mujoco.MjData(model)
     names = list(robot.joint_names)
@@ -120,7 +127,9 @@ def _sliding_hinges(rubber: Mapping[str, Rubber]) -> list[tuple[str, str, Hinge]
     return [each for each in found if each[2].slip_torque > 0]
 
 
-def _model(robot: RobotModel, rubber: Mapping[str, Rubber], *, lifted: bool) -> mujoco.MjModel:
+def _model(
+    robot: RobotModel, rubber: Mapping[str, Rubber], *, lifted: bool, gears: float = 0.0
+) -> mujoco.MjModel:
     servo = SERVO * weight_times_height(robot)
     spec = mujoco.MjSpec.from_string(_bare(robot.urdf))
     spec.compiler.fusestatic, spec.compiler.balanceinertia = False, True
@@ -132,6 +141,12 @@ def _model(robot: RobotModel, rubber: Mapping[str, Rubber], *, lifted: bool) -> 
         if joint.type == mujoco.mjtJoint.mjJNT_FREE:
             continue
         joint.limited, joint.frictionloss, joint.armature = False, 0.0, ROTOR * servo
+        if gears and joint.name in robot.joint_names:
+            gear = joint.parent.add_joint(
+                name=f"{joint.name}.gear", type=joint.type, axis=joint.axis, pos=joint.pos
+            )
+            gear.stiffness[0], gear.damping[0] = 1 / gears, GEAR_DAMPING / gears
+            gear.armature = 0.01 * ROTOR * servo
     for name in robot.joint_names:
         actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         actuator.set_to_position(kp=servo, kv=SERVO_DAMPING * servo)

@@ -28,7 +28,7 @@ TOLD = 0.9  # times the rubber's stiffness, that the controller is told
 PARTS = round(1000 / RATE)
 
 
-def walked(robot: RobotModel, name: str, rubber: Mapping[str, Rubber]) -> Motion | None:
+def walked(robot: RobotModel, name: str, rubber: Mapping[str, Rubber], gears: float = 0.0) -> Motion | None:
     """One walk; None where the robot falls. Raises MotionError where its legs do not reach."""
     plan = planned(name, robot)
     order = [plan.joints.index(joint) for joint in robot.joint_names]
@@ -41,7 +41,7 @@ def walked(robot: RobotModel, name: str, rubber: Mapping[str, Rubber]) -> Motion
     def leads(model: mujoco.MjModel) -> Callable[[int, mujoco.MjData], Array]:
         return _lead(model, robot, plan, rubber)
 
-    motion = play(robot, np.r_[start[:3, 3], turn], targets, rubber, leads)
+    motion = play(robot, np.r_[start[:3, 3], turn], targets, rubber, leads, gears)
     up = Rotation.from_quat(motion.orientation, scalar_first=True).as_matrix()[:, 2]  # in the IMU's axes
     leant = np.arccos(np.clip(up @ up[0], -1, 1))
     return motion if leant.max() < FALLEN else None

@@ -221,3 +221,13 @@ def test_rows_of_a_walk_change_as_what_it_misses_does(twin: RobotModel) -> None:
         changed = (bent[row].signals[:, 0] - stiff[row].signals[:, 0]) / 1e-6
         slope = stiff[row].signals[:, column]
         assert slope @ changed == pytest.approx(changed @ changed, rel=0.03)
+
+
+@pytest.mark.parametrize(("mean", "some"), [(3e-5, False), (6e-5, True)])
+def test_a_joint_that_hardly_carries_objects_to_little(twin: RobotModel, mean: float, some: bool) -> None:
+    """A yaw joint that seems to push, by three and a half deviations, as much as a few of the others bend or less."""
+    columns, count = compliance_columns(twin), len(prior_deviations(twin))
+    values, std = np.zeros(count), np.full(count, 1e-5)
+    values[columns], std[columns.start] = mean, 4e-5
+    values[columns.start] = -1.5e-4
+    assert joint_bending(twin, MomentFit(values, [Part(np.diag(std**2), 39.0)])).found == some

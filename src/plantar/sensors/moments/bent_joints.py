@@ -82,8 +82,12 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
         return float(np.linalg.slogdet(total)[1] + values @ np.linalg.solve(total, values))
 
     size = robot.uncertainty.joint_compliance
-    # No joint bends against its load.
-    gives_way = mean > 0 and bool((values > -SHOWN * np.sqrt(np.diag(covariance))).all())
+    # No joint bends against its load. What one that hardly carries seems to do is mostly another error, and no
+    # objection where joints differ by less than they bend together.
+    together = (mean / std) ** 2
+    differ = float(values @ np.linalg.solve(covariance, values)) - together - (count - 1)
+    against = bool((values < -SHOWN * np.sqrt(np.diag(covariance))).any())
+    gives_way = mean > 0 and (not against or differ < together)
     # Of all joints together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
     own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in parts]
     if gives_way and is_wrong(np.array([mean]), own, [0]):
