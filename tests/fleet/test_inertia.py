@@ -75,9 +75,11 @@ def test_a_broken_log_is_told_and_left_out(client: Any, folder: Path) -> None:
     assert [Path(entry.path).name for entry in found.inputs] == ["log_0.parquet", "log_1.parquet"]
     (note,) = (note for note in found.notes if note.code == "log_left_out")
     assert note.text.startswith(f"{broken}: is not a readable Parquet file")
-    with pytest.raises(DataError, match="none of the first 1 logs can be used"):
+    other = folder / "other.parquet"
+    other.write_bytes(b"PAR1")
+    with pytest.raises(DataError, match=r"none of the first 2 logs can be used: .*broken\.parquet"):
         inertia_over(
-            client, str(folder / "biped.yaml"), [str(broken)], settings=None, progress=lambda _: None
+            client, str(folder / "biped.yaml"), [str(broken), str(other)], settings=None, progress=lambda _: None
         )
 
 
