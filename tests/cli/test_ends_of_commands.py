@@ -73,6 +73,7 @@ def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
 def test_compare_says_from_when_on_a_sole_tips_and_what_held_before(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
     rows = [
         comparison.KindScore("sway", "joints", 0.003, 0.004, 2.5, 12.0, None, 7.25, 0.001),
         comparison.KindScore("squat", "joints", 0.003, 0.004, 2.5, 12.0, None, None, 0.001),
@@ -82,6 +83,7 @@ def test_compare_says_from_when_on_a_sole_tips_and_what_held_before(
     made_up(monkeypatch, comparison, compare=(rows, []))
     compare.run(Path("result.json"), Path("robot.yaml"), [Path("a.csv")], quiet=False)
     printed = capsys.readouterr().out
+    assert "\x1b[33msway: from" in printed, "a warning is yellow"
     assert "chest, all motions: joints 5.00 mrad" in printed
     assert "chest, until a sole tips: joints 1.00 mrad" in printed
     assert "sway: from 7.2 s on a sole of the record stands on its edge" in printed
