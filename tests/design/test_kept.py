@@ -129,10 +129,10 @@ def rehearsed(factor: float, place: int) -> Rehearsal:
 def test_what_is_promised_is_as_it_is_kept(tmp_path: Path) -> None:
     """The motion, its files and gentler versions, and what its rehearsals say; alone and after an earlier result."""
     legs, lines = design_samples.legs(), Lines.drawn(10.0, np.random.default_rng(1))
-    motion = 0.003 * np.random.default_rng(2).standard_normal(lines.size)
+    motion = 0.006 * np.random.default_rng(2).standard_normal(lines.size)
     trajectory = Trajectory.of("made", legs, lines, motion)
     made = Design(
-        DesignSettings(500.0, duration=10.0), hrp2.robot(), design_samples.told(), (0.5, 2.0), 237.5, legs, lines,
+        DesignSettings(500.0, duration=20.0), hrp2.robot(), design_samples.told(), (0.5, 2.0), 237.5, legs, lines,
         motion, trajectory, tuple(rehearsed(*each) for each in ((0.5, 2), (1.0, 0), (1.4, 3), (2.0, 1))), 12, None,
     )  # fmt: skip
     path, targets = tmp_path / "motion.csv", ("ros", "openhrp", "mc_rtc")
