@@ -114,6 +114,10 @@ LOGS: dict[str, Callable[[], tuple[MotionLog, FeetResult | None]]] = {
     "faulty": lambda: (faulty(swayed()), None),
     "faulty as told": lambda: (faulty(swayed(truth=SLIPPING)), result(model="elastoplastic")),
     "coarse as told": lambda: (coarse(swayed(truth=SLIPPING)), result(model="elastoplastic")),
+    "coarse steps as told": lambda: (
+        coarse(swayed(truth=SLIPPING, lifts=LIFTS)),
+        result(model="elastoplastic"),
+    ),
     "late forces": lambda: (late(swayed(), "wrench", 0.03), None),
     "late imu": lambda: (late(swayed(), "imu", 0.03), None),
     "without attitude": lambda: (without(swayed(), "orientation"), None),
