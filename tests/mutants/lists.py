@@ -21,6 +21,7 @@ from fleet_statistics import FLEET
 from handed_on import HANDED_ON
 from in_their_place import IN_THEIR_PLACE
 from kept_outputs import KEPT
+from kept_parts import KEPT_PARTS
 from literal_edges import LITERAL_EDGES
 from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
@@ -64,4 +65,5 @@ LISTS = {
     "in_their_place": IN_THEIR_PLACE,
     "by_hand": BY_HAND,
     "kept_outputs": KEPT,
+    "kept_parts": KEPT_PARTS,
 }
