@@ -18,6 +18,7 @@ import pytest
 
 import plantar
 from example_folder import make_folder
+from kept_texts import assert_as_kept
 from plantar.feet.settings import FeetSettings
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,6 +73,21 @@ def documented() -> list[tuple[str, Any]]:
 def test_dir_shows_the_api_and_nothing_else() -> None:
     assert {name for name in dir(plantar) if not name.startswith("__")} == PROMISED
     assert set(plantar.__all__) == PROMISED | {"__version__"}
+
+
+def test_what_the_api_takes_and_holds_is_as_it_is_kept() -> None:
+    """Every public name with its arguments, in their order and with their defaults."""
+    lines = []
+    for name in (*functions(), *classes()):
+        thing = public(name)
+        lines.append(f"{name}{inspect.signature(thing)}")
+        own = vars(thing).items() if inspect.isclass(thing) else ()
+        lines += [
+            f"  {part}{inspect.signature(getattr(thing, part))}" if callable(getattr(thing, part)) else f"  {part}"
+            for part, _ in sorted(own) if not part.startswith("_")
+        ]  # fmt: skip
+    text = re.sub(r" at 0x\w+", "", "\n".join(lines)) + "\n"
+    assert_as_kept(text, Path(__file__).parent / "kept" / "api.txt")
 
 
 def test_help_shows_every_function_and_class() -> None:
