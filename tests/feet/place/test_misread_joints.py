@@ -223,13 +223,13 @@ def test_it_has_to_explain_a_third_of_what_is_left(
 @pytest.mark.parametrize(
     ("kind", "size", "std", "singular", "moved", "said"),
     [
-        ("gain", 0.05, 0.01, False, 30.0, True),
-        ("gain", -0.05, 0.01, False, 30.0, True),
-        ("gain", 0.05, 0.01, True, 30.0, False),  # what columns that hang together tell is no error
+        ("gain", 0.05, 0.002, False, 30.0, True),
+        ("gain", -0.05, 0.002, False, 30.0, True),
+        ("gain", 0.05, 0.002, True, 30.0, False),  # what columns that hang together tell is no error
         ("gain", 0.05, 0.02, False, 30.0, False),  # hardly known
-        ("gain", 0.9, 0.01, False, 30.0, False),  # no encoder reads that
-        ("play", -0.002, 1e-4, False, 30.0, False),  # no drive is ahead of its joint
-        ("play", 0.002, 1e-4, False, 30.0, True),
+        ("gain", 0.9, 0.002, False, 30.0, False),  # no encoder reads that
+        ("play", -0.002, 5e-5, False, 30.0, False),  # no drive is ahead of its joint
+        ("play", 0.002, 5e-5, False, 30.0, True),
     ],
 )
 def test_an_error_of_a_joint_is_surely_known_and_of_a_size_that_there_is(
