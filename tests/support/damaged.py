@@ -9,18 +9,18 @@ from typing import Any
 from plantar.errors import PlantarError
 
 GONE = object()
-OTHER_TEXTS = (None, "x", "nan", "1 2")
+OTHER_TEXTS = (None, "x", "nan", "1 2", "0")
 
 
 def damaged(content: Any) -> Iterator[tuple[str, Any]]:
-    """JSON or YAML with one value gone, a word, or below zero where it is a number, and where; of a list its first item
-    stands for all."""
+    """JSON or YAML with one value gone, a word, or zero or less where it is a number, and where; of a list the first
+    item stands for all."""
     if not isinstance(content, dict | list):
         return
     keys = list(content) if isinstance(content, dict) else [0] if content else []
     for key in keys:
         number = isinstance(content[key], int | float)
-        for other in (GONE, "x", -1.5) if number else (GONE, "x"):
+        for other in (GONE, "x", -1.5, 0) if number else (GONE, "x"):
             changed = content.copy()
             if other is GONE:
                 del changed[key]
