@@ -71,6 +71,7 @@ class Stream {
   const RowLayout& layout(std::size_t row) const { return layouts_[row]; }
   std::size_t rows() const { return layouts_.size(); }
   std::size_t groups() const { return groups_.size(); }
+  std::size_t first_row(std::size_t group) const { return groups_[group].rows.front(); }
 
   void add(const Kernels& kernels, const Motion& motion, const std::vector<std::vector<Column>>& extras,
            std::size_t samples, unsigned threads) {
