@@ -204,3 +204,18 @@ def test_a_command_that_is_interrupted_says_so(
         main(["show", "reference"])
     assert ended.value.code == 130
     assert capsys.readouterr().err == "plantar: interrupted\n"
+
+
+def test_a_reader_that_goes_away_ends_the_command_in_silence(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def run() -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr("plantar.cli.show.run", run)
+    turned: list[int] = []
+    monkeypatch.setattr("os.dup2", lambda _, to: turned.append(to))
+    with pytest.raises(SystemExit) as ended:
+        main(["show", "reference"])
+    assert (ended.value.code, len(turned)) == (1, 1)
+    assert capfd.readouterr() == ("", "")
