@@ -12,6 +12,7 @@ from drawn_again import DRAWN_AGAIN
 from drawn_anew import DRAWN_ANEW
 from drawn_at_random import DRAWN_AT_RANDOM
 from drawn_blind import DRAWN_BLIND
+from drawn_by_hand import DRAWN_BY_HAND
 from drawn_by_lot import DRAWN_BY_LOT
 from drawn_everywhere import DRAWN_EVERYWHERE
 from drawn_last import DRAWN_LAST
@@ -66,4 +67,5 @@ LISTS = {
     "by_hand": BY_HAND,
     "kept_outputs": KEPT,
     "kept_parts": KEPT_PARTS,
+    "drawn_by_hand": DRAWN_BY_HAND,
 }
