@@ -65,7 +65,7 @@ def compared(
     robot = SimpleNamespace(
         joint_names=("a",), feet={"left": None, "right": None}, base="floating", path="biped.yaml"
     )
-    result = SimpleNamespace(parameters=[SimpleNamespace(foot="left")])
+    result = SimpleNamespace(parameters=[SimpleNamespace(foot="left")], joint_compliance={})
     log = SimpleNamespace(name="sway", source="sway.csv", has=lambda name: name == "joint.a.position")
     scores, found = compare(result, robot, [log])  # type: ignore[arg-type, list-item]
     return scores, played, found

@@ -37,7 +37,7 @@ MADE_CHEAPER = (
         ("feet/test_foot_fit.py",),
     ),
     Mutant(
-        "feet/validate.py", "the encoders' delay is forgotten",
+        "sensors/delays/sensor_delay.py", "the encoders' delay is forgotten",
         "dict(stored.feet), stored.encoder_delay)", "dict(stored.feet), 0.0)", ("feet/test_validate.py",),
     ),
     Mutant(

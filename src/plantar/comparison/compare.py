@@ -16,8 +16,11 @@ from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.sensors.delays.sensor_delay import stored_delay
+from plantar.sensors.moments.bent_joints import put_straight, stored_bends
+from plantar.twin.log_at import log_at
 from plantar.twin.play import on_cores
-from plantar.twin.replay import Replayed, beside, plan_of, record_of
+from plantar.twin.replay import Replayed, beside, plan_of, plan_times, record_of
 from plantar.twin.simulation.rollout import Rollout, roll_out
 
 SIMULATORS: Final = ("mujoco",)
@@ -84,7 +87,7 @@ def compare(
     for log, tips in zip(logs, edges, strict=True):
         if not any(log.has(f"joint.{name}.position") for name in robot.joint_names):
             raise DataError("holds no joints to play", path=log.source)
-        plan = plan_of(robot, log)
+        plan = plan_of(robot, _straight(result, robot, log))
         if plan.time[-1] < SHORTEST:
             valid = f"{SHORTEST:g} s or more"
             raise DataError(
@@ -107,6 +110,14 @@ def compare(
             found.append(replayed)
         progress(f"played {log.name}")
     return tuple(scores), tuple(found)
+
+
+def _straight(result: FeetResult, robot: RobotModel, log: MotionLog) -> MotionLog:
+    """The log with its joints where their links were, of a robot whose joints bend beyond their encoders."""
+    if not result.joint_compliance:
+        return log
+    bends, even = stored_bends(robot, result.joint_compliance), log_at(log, log.time[0] + plan_times(log))
+    return put_straight(robot, even, bends, stored_delay(result.sensor_delay))
 
 
 def _check(result: FeetResult, robot: RobotModel) -> None:

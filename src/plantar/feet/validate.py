@@ -19,11 +19,12 @@ from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.logs.stretches import LONGEST
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
-from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, ValidationRow
+from plantar.results.feet import AxisModel, FeetResult, ValidationRow
 from plantar.results.feet_rows import LinearEquivalent
 from plantar.results.usage import used_shares
 from plantar.robot.model import RobotModel
-from plantar.sensors.delays.sensor_delay import SensorDelay
+from plantar.sensors.delays.sensor_delay import stored_delay
+from plantar.sensors.moments.bent_joints import stored_bends
 
 
 @blas_on_one_core()
@@ -77,8 +78,8 @@ def scored_feet(
         raise DataError(f"the result is about a foot '{strangers[0]}' (valid: {', '.join(robot.feet)})")
     known = {key: value for key, value in found.settings.items() if key in FeetSettings.__dataclass_fields__}
     compliance = {foot: found.compliance.get(foot, 0.0) for foot in robot.feet}
-    bends = np.array([found.joint_compliance.get(joint, 0.0) for joint in robot.joint_names])
-    delay = _sensor_delay(found.sensor_delay)
+    bends = stored_bends(robot, found.joint_compliance)
+    delay = stored_delay(found.sensor_delay)
     recordings = prepare_unseen(
         robot, logs_of(logs, robot, LONGEST), FeetSettings(**known), delay, compliance, progress, bends
     )
@@ -126,14 +127,6 @@ def _unscored(
             reasons = share.reasons or "nothing, but the result has no model of this foot"
             notes.append(Note("not_scored", "warning", text + reasons))
     return notes
-
-
-def _sensor_delay(stored: DelayEstimate | None) -> SensorDelay:
-    """The delays that the result's logs were corrected for; none where it names none."""
-    stored = stored or DelayEstimate(0.0, 0.0, False)
-    text = f"wrenches taken as {1e3 * stored.wrench_delay:+.1f} ms late, as in the result"
-    note = Note("delay_given", "info", text)
-    return SensorDelay(stored.wrench_delay, 0.0, np.inf, False, note, dict(stored.feet), stored.encoder_delay)
 
 
 def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | None:

@@ -178,13 +178,18 @@ def feet_of(result: FeetResult) -> Feet:
     return {foot: Bush(**own) for foot, own in values.items()}
 
 
+def plan_times(log: MotionLog) -> Array:
+    """Of the samples of a log's plan, from its first sample on [s]."""
+    return np.arange(int((log.time[-1] - log.time[0]) * RATE + 1e-6) + 1) / RATE
+
+
 def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan:
     """The recorded joints as a plan at 200 Hz, from where the first sample stands on flat soles.
 
     A servo's give is added, so that it stands where the recorded one did: under the recorded efforts, or, of a joint
     that has none, under those that hold the robot against gravity on the recorded wrenches.
     """
-    time = np.arange(int((log.time[-1] - log.time[0]) * RATE + 1e-6) + 1) / RATE
+    time = plan_times(log)
     recorded = log_at(log, log.time[0] + time)
     positions = recorded.positions(robot)
     check_whole(log, "the joints", time, positions)

@@ -21,6 +21,7 @@ from plantar.estimation.delays.lag_search import Lags, search_lags
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
+from plantar.results.feet_rows import DelayEstimate
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.lagged_log import SEARCHED, STEP, lagged_log
 from plantar.sensors.delays.refined_delays import (
@@ -92,6 +93,14 @@ def known_delay(delay: float) -> SensorDelay:
     """A delay that the user knows."""
     text = f"wrenches taken as {1e3 * delay:+.1f} ms late, as given in the settings"
     return SensorDelay(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
+
+
+def stored_delay(stored: DelayEstimate | None) -> SensorDelay:
+    """The delays that a result's logs were corrected for; none where it names none."""
+    stored = stored or DelayEstimate(0.0, 0.0, False)
+    text = f"wrenches taken as {1e3 * stored.wrench_delay:+.1f} ms late, as in the result"
+    note = Note("delay_given", "info", text)
+    return SensorDelay(stored.wrench_delay, 0.0, np.inf, False, note, dict(stored.feet), stored.encoder_delay)
 
 
 def estimate_wrench_delay(

@@ -6,6 +6,7 @@ force sensor, which the horizontal forces show, and shifts the body over the foo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -113,6 +114,11 @@ def joint_bending_notes(robot: RobotModel, bending: JointBending) -> list[Note]:
         "C (encoders on the links' side of the gears see all of it)"
     )
     return [Note(BENT, "info", text)]
+
+
+def stored_bends(robot: RobotModel, compliances: Mapping[str, float]) -> Array:
+    """Of each joint (joints,) [rad/(N.m)], by what a result holds of those that bend."""
+    return np.array([compliances.get(joint, 0.0) for joint in robot.joint_names])
 
 
 def put_straight(robot: RobotModel, log: MotionLog, compliances: Array, delay: SensorDelay) -> MotionLog:
