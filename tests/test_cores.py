@@ -93,6 +93,14 @@ def test_arrays_keep_their_order_in_memory() -> None:
     assert all(one.flags.f_contiguous and not one.flags.c_contiguous for one in found)
 
 
+def test_arrays_begin_where_memory_of_their_own_would() -> None:
+    """At 64 bytes, whatever stands in front of them."""
+    found = over_cores(lambda size: [np.arange(size + k, dtype=np.uint8) for k in range(3)], [5, 70], cores=2)
+    for size, arrays in zip([5, 70], found, strict=True):
+        assert [one.tolist() for one in arrays] == [list(range(size + k)) for k in range(3)]
+        assert [one.ctypes.data % 64 for one in arrays] == [0, 0, 0]
+
+
 @pytest.mark.parametrize("wrong", [{0}, {1}, {0, 1}, {1, 2}, {2, 3}, {3}])
 def test_the_error_is_that_of_the_first_item(wrong: set[int]) -> None:
     def refuse(item: int) -> int:

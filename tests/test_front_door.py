@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import inspect
+import math
 import os
 import pydoc
 import re
@@ -18,6 +19,9 @@ import pytest
 
 import plantar
 from example_folder import make_folder
+from kept_texts import assert_as_kept
+from plantar.design.story import DesignSettings
+from plantar.errors import SettingsError
 from plantar.feet.settings import FeetSettings
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,6 +76,37 @@ def documented() -> list[tuple[str, Any]]:
 def test_dir_shows_the_api_and_nothing_else() -> None:
     assert {name for name in dir(plantar) if not name.startswith("__")} == PROMISED
     assert set(plantar.__all__) == PROMISED | {"__version__"}
+
+
+def test_what_the_api_takes_and_holds_is_as_it_is_kept() -> None:
+    """Every public name with its arguments, in their order and with their defaults."""
+    lines = []
+    for name in (*functions(), *classes()):
+        thing = public(name)
+        lines.append(f"{name}{inspect.signature(thing)}")
+        own = vars(thing).items() if inspect.isclass(thing) else ()
+        lines += [
+            f"  {part}{inspect.signature(getattr(thing, part))}" if callable(getattr(thing, part)) else f"  {part}"
+            for part, _ in sorted(own) if not part.startswith("_")
+        ]  # fmt: skip
+    text = re.sub(r" at 0x\w+", "", "\n".join(lines)) + "\n"
+    assert_as_kept(text, Path(__file__).parent / "kept" / "api.txt")
+
+
+@pytest.mark.parametrize(
+    "kind", [FeetSettings, plantar.DynamicsSettings, DesignSettings], ids=lambda one: one.__name__
+)
+def test_settings_of_which_one_is_out_of_place_are_as_they_are_kept(kind: Any) -> None:
+    """Whether it is taken, or the line that says what would be."""
+    lines = []
+    for name in inspect.signature(kind).parameters:
+        for value in (None, "x", True, math.nan, math.inf, -1e9, -1.0, -0.05, 0.0, 1e-3, 0.1, 3.2, 25.0, 1e9):
+            try:
+                found = repr(getattr(kind(**{name: value}), name))
+            except SettingsError as error:
+                found = f"refused: {error}"
+            lines.append(f"{name} {value!r}: {found}")
+    assert_as_kept("\n".join(lines) + "\n", Path(__file__).parent / "kept" / f"{kind.__name__}.txt")
 
 
 def test_help_shows_every_function_and_class() -> None:

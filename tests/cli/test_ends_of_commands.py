@@ -10,14 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plantar.campaign import scene
-from plantar.cli import compare, design, main, select
+import plantar.campaign
+from plantar.campaign import present, scene
+from plantar.campaign import tables as campaign_tables
+from plantar.cli import compare, demo, design, main, select
 from plantar.comparison import compare as comparison
 from plantar.design import paper_motions, story
 from plantar.design.paper_motions import PaperMotions
 from plantar.design.writing import outputs
 from plantar.logs.readers import open_log
 from plantar.motions.select_motions import Choice, Selection
+from plantar.notes import Note
+from plantar.report.content import Cell, Column, Table
 
 KEYS = [("left", "pitch", "stiffness"), ("left", "pitch", "damping")]
 WIDTHS = [("left", axis, term) for axis in ("pitch", "roll") for term in ("stiffness", "damping")]
@@ -73,6 +77,7 @@ def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
 def test_compare_says_from_when_on_a_sole_tips_and_what_held_before(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
     rows = [
         comparison.KindScore("sway", "joints", 0.003, 0.004, 2.5, 12.0, None, 7.25, 0.001),
         comparison.KindScore("squat", "joints", 0.003, 0.004, 2.5, 12.0, None, None, 0.001),
@@ -82,6 +87,7 @@ def test_compare_says_from_when_on_a_sole_tips_and_what_held_before(
     made_up(monkeypatch, comparison, compare=(rows, []))
     compare.run(Path("result.json"), Path("robot.yaml"), [Path("a.csv")], quiet=False)
     printed = capsys.readouterr().out
+    assert "\x1b[33msway: from" in printed, "a warning is yellow"
     assert "chest, all motions: joints 5.00 mrad" in printed
     assert "chest, until a sole tips: joints 1.00 mrad" in printed
     assert "sway: from 7.2 s on a sole of the record stands on its edge" in printed
@@ -157,6 +163,36 @@ def test_design_like_the_paper_tells_the_best_motion_beside_the_best_set(
     assert "The best set: Squat, Tilt2." in printed
 
 
+def test_the_demo_prints_its_tables_one_by_one_and_warnings_in_yellow(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """A row has the colour of its first cell that is weak or bad."""
+    rows = [
+        (Cell("left", "good"), Cell("2.0", "weak"), Cell("9", "bad")),
+        (Cell("right"), Cell("1.0", "good"), Cell("8", "bad")), (Cell("both"), Cell("3.0", "good"), "7"),
+    ]  # fmt: skip
+    made = Table.of("Table [b]", [Column("foot"), Column("error", "N·m"), Column("seen")], rows)
+    notes = (Note("a", "info", "told elsewhere"), Note("b", "warning", "late [b] by 3 ms"))
+    campaign = SimpleNamespace(result=SimpleNamespace(notes=notes))
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "200")
+    made_up(monkeypatch, plantar.campaign, run_campaign=campaign)
+    made_up(monkeypatch, present, write_campaign_report=SimpleNamespace(report="R [b]", scene="S"))
+    made_up(monkeypatch, campaign_tables, tables=(made, made))
+    demo.run(tmp_path, quiet=False)
+    printed = capsys.readouterr().out
+    lines = printed.splitlines()
+    assert [line.split() for line in lines].count([]) == 2, "between tables and in front of the files"
+    assert "error [N·m]" in printed
+    colours = [("left", "33"), ("right", "31"), ("both", None)]
+    for name, colour in colours:
+        (line, _) = (line for line in lines if name in line)
+        assert line.startswith(f"\x1b[{colour}m") if colour else "\x1b[3" not in line
+    assert "\x1b[33mnote: late [b] by 3 ms" in printed
+    assert "told elsewhere" not in printed
+    assert lines[-4:] == [str(tmp_path / "result.json"), "R [b]", "S", str(tmp_path / "figures")]
+
+
 def test_a_command_that_is_interrupted_says_so(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -168,3 +204,18 @@ def test_a_command_that_is_interrupted_says_so(
         main(["show", "reference"])
     assert ended.value.code == 130
     assert capsys.readouterr().err == "plantar: interrupted\n"
+
+
+def test_a_reader_that_goes_away_ends_the_command_in_silence(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def run() -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr("plantar.cli.show.run", run)
+    turned: list[int] = []
+    monkeypatch.setattr("os.dup2", lambda _, to: turned.append(to))
+    with pytest.raises(SystemExit) as ended:
+        main(["show", "reference"])
+    assert (ended.value.code, len(turned)) == (1, 1)
+    assert capfd.readouterr() == ("", "")

@@ -59,6 +59,8 @@ def test_convert_several_logs_into_a_directory(
     logs = [tmp_path / "one.csv", tmp_path / "two.csv"]
     assert command("convert", *logs, "--out", tmp_path / "all", "--to", "mcap") == 0
     assert sorted(path.name for path in (tmp_path / "all").iterdir()) == ["one.mcap", "two.mcap"]
+    assert command("convert", *logs, "--out", tmp_path / "usual") == 0
+    assert sorted(path.name for path in (tmp_path / "usual").iterdir()) == ["one.parquet", "two.parquet"]
     assert command("convert", *logs, "--out", tmp_path / "all.csv") == 1
     assert command("convert", logs[0], logs[0], "--out", tmp_path / "all") == 1
     assert command("convert", logs[0], "--out", tmp_path / "log.xlsx") == 1

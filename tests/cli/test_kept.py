@@ -38,6 +38,18 @@ COMMANDS: dict[str, Sequence[str]] = {
     "inertia": ["identify", "inertia", "moving/biped.yaml", "moving/one.csv", "--validate", "moving/two.csv", "--out",
                 "inertia"],
 }  # fmt: skip
+# Its terms of which the logs say nothing are zero but for rounding.
+JOINTS = [
+    "identify",
+    "joints",
+    "moving/biped.yaml",
+    "moving/short.csv",
+    "--inertia",
+    "known",
+    "--out",
+    "joints",
+]
+READING = {**COMMANDS, "joints": JOINTS}
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +64,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "moving").mkdir()
     robot = small_biped.robot(folder / "moving")
     real = small_biped.truth(robot.floating_model, 1)
-    for seed, name in enumerate(("one", "two")):
-        write_csv(small_biped.record(robot, real, name, seed, 20.0, 0.5), folder / "moving" / f"{name}.csv")
+    for seed, (name, seconds) in enumerate((("one", 20.0), ("two", 20.0), ("short", 4.0))):
+        write_csv(
+            small_biped.record(robot, real, name, seed, seconds, 0.5), folder / "moving" / f"{name}.csv"
+        )
     return folder
 
 
@@ -79,14 +93,10 @@ def test_every_command_that_reads_logs_hears_how_much_memory_they_may_take(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)
-    for name in ("inspect", "feet", "select", "online alone", "convert", "inertia"):
-        words = [word.replace("ROBOT", "robot.yaml") for word in COMMANDS[name]]
+    for name in ("inspect", "feet", "select", "online alone", "convert", "inertia", "joints"):
+        words = [word.replace("ROBOT", "robot.yaml") for word in READING[name]]
         assert run(*words, "--memory", "100KB") == 1, name
         assert "memory" in capsys.readouterr().err, name
-    assert (
-        run("identify", "joints", "moving/biped.yaml", "moving/one.csv", "--out", "j", "--memory", "100KB")
-        == 1
-    )
     assert run("bug-report", "robot.yaml", "sway.csv", "--memory", "100KB") == 0
     assert "is refused" in capsys.readouterr().out
 
@@ -95,8 +105,29 @@ def test_what_is_printed_for_scripts_is_json_alone(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)
-    for name in ("inspect", "feet", "validate", "diagnose", "select", "show", "online alone", "inertia"):
-        assert run(*(word.replace("ROBOT", "robot.yaml") for word in COMMANDS[name]), "--json") == 0, name
+    for name in (
+        "inspect",
+        "feet",
+        "validate",
+        "diagnose",
+        "select",
+        "show",
+        "online alone",
+        "inertia",
+        "joints",
+    ):
+        assert run(*(word.replace("ROBOT", "robot.yaml") for word in READING[name]), "--json") == 0, name
         text = capsys.readouterr().out
         assert isinstance(json.loads(text), dict), name
         assert text.count("\n\n") == 0, name
+
+
+def test_joints_name_their_files_unless_they_are_quiet(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    assert run(*JOINTS) == 0
+    names = ("result.json", "identified.urdf", "report.html")
+    assert capsys.readouterr().out.split()[-3:] == [f"joints/{name}" for name in names]
+    assert run(*JOINTS, "--quiet") == 0
+    assert capsys.readouterr() == ("", "")

@@ -80,6 +80,7 @@ def test_a_robot_of_the_users_own_comes_with_its_robot_file(tmp_path: Path) -> N
         (["Squat", "--bush", "1,2,x"], "--bush is not four or six numbers"),
         (["Squat", "--robot", "missing.yaml"], "missing.yaml: cannot be read"),
         (["Tilt1", "--sway", "nan"], "--sway is no length"),
+        (["Squat", "--vertical", "0"], "--vertical is no length"),
         (["Tilt1", "--apart", "0.1"], "the soles would stand on each other"),
         (["Squat", "--vertical", "0.6"], "s: Squat: the chest cannot reach its place, it falls short by"),
         (["Manual_right_roll", "--sway", "0.3"], "the zero-moment point leaves the support polygon by"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 from rich.markup import render
 
 from command_line import run, write_csv
+from kept_texts import assert_as_kept
 from plantar import __version__
 from plantar.cli import COMMANDS
 from plantar.cli.console.terminal import console, table
@@ -42,6 +44,21 @@ def test_no_help_loses_a_unit_to_markup(verb: str) -> None:
     annotations = get_type_hints(run, include_extras=True).values()
     options = [option for annotation in annotations for option in getattr(annotation, "__metadata__", ())]
     assert all(render(option.help or "").plain == option.help for option in options)
+
+
+def test_options_and_their_defaults_are_as_they_are_kept() -> None:
+    """Of each command: in which order, under what name, between what limits, and what holds where nothing is told."""
+    lines = []
+    for verb, (module, text) in COMMANDS.items():
+        run = import_module(f"plantar.cli.{module}").run
+        lines.append(f"{verb}: {text}")
+        hints = get_type_hints(run, include_extras=True)
+        for name, one in inspect.signature(run).parameters.items():
+            told = "needed" if one.default is one.empty else repr(one.default).removeprefix("Posix")
+            options = getattr(hints[name], "__metadata__", ())
+            limits = [(each.param_decls, each.min, each.max, each.metavar, each.help) for each in options]
+            lines.append(f"  {name} {told} {' '.join(map(str, limits))}")
+    assert_as_kept("\n".join(lines) + "\n", Path(__file__).parent / "kept" / "options.txt")
 
 
 def test_advice_is_given_once() -> None:

@@ -104,11 +104,19 @@ def test_feet_are_told_with_interval_deviation_and_scores() -> None:
     assert last == len(lines) - 1
 
 
-def test_feet_of_many_logs_fit_a_screen() -> None:
+@pytest.mark.parametrize(
+    ("lost", "named", "alone"),
+    [
+        ((10,), "walk_10", "18.4"),
+        ((1, 4, 10), "walk_1, walk_4, walk_10", "15.1"),
+        ((1, 4, 7, 10), "walk_1, walk_4, walk_7 and 1 more", "13.5"),
+    ],
+)
+def test_feet_of_many_logs_fit_a_screen(lost: tuple[int, ...], named: str, alone: str) -> None:
     """Eleven walks: 44 rows of errors are four, over all samples; notes that are no warnings take four lines."""
     walks = [f"walk_{place}" for place in range(11)]
     rows = [
-        ValidationRow("direct", walk, foot, axis, 1.0 + place, 2.0, 10.0 + place, 9.0, 20.0 - 18 * (place == 10), 100)
+        ValidationRow("direct", walk, foot, axis, 1.0 + place, 2.0, 10.0 + place, 9.0, 20.0 - 18 * (place in lost), 100)
         for foot in ("left", "right")
         for axis in ("pitch", "roll")
         for place, walk in enumerate(walks)
@@ -124,9 +132,9 @@ def test_feet_of_many_logs_fit_a_screen() -> None:
     assert len(lines) <= 25
     heads, cells = under(lines, "Table 2. Direct validation [N·m]")
     assert heads[0] == "motions"
-    said = "no better than the offset alone: walk_10"
+    said = f"no better than the offset alone: {named}"
     assert cells[:4] == [
-        ["11", foot, axis, "6.00", "2.00", "20.00", "30.0", "18.4", said]
+        ["11", foot, axis, "6.00", "2.00", "20.00", "30.0", alone, said]
         for foot in ("left", "right")
         for axis in ("pitch", "roll")
     ]

@@ -14,11 +14,13 @@ import pytest
 import plantar
 from command_line import run
 from plantar.comparison import compare as comparison
+from plantar.comparison import scenes as scene_module
 from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LOOP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
+from plantar.exporters.bush import FootBush
 from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
@@ -165,7 +167,9 @@ def test_a_contact_whose_slip_the_loop_applies_moves_as_the_joints_do(tmp_path: 
     assert chest[CONTACT] > 3 * chest[WITH_LOOP]  # type: ignore[operator]
 
 
-def test_feet_that_turn_about_the_bush_stand_lower(result: FeetResult, log: MotionLog) -> None:
+def test_feet_that_turn_about_the_bush_stand_lower(
+    result: FeetResult, log: MotionLog, monkeypatch: pytest.MonkeyPatch
+) -> None:
     made = scenes(
         result, hrp2.robot(), plan_of(hrp2.robot(), log), stance=Stance("bush"), swing=None, tips=False
     )
@@ -173,6 +177,15 @@ def test_feet_that_turn_about_the_bush_stand_lower(result: FeetResult, log: Moti
         {AS_IT_WAS: 0.0, JOINTS: 0.0, CONTACT: 0.02}
     )
     assert all(one.force is None for one in made.values())
+    on_twin = scene_module._on_twin
+
+    def uneven(foot: FootBush, robot: RobotModel) -> FootBush:
+        placed = on_twin(foot, robot)
+        return placed if foot.name == "left" else replace(placed, sole=placed.sole - [0.0, 0.0, 0.004])
+
+    monkeypatch.setattr(scene_module, "_on_twin", uneven)
+    made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), None, Stance("bush"), tips=False)
+    assert made[CONTACT].lower == pytest.approx(0.02), "by the foot whose bush is nearer to the floor"
 
 
 @pytest.mark.slow

@@ -10,16 +10,9 @@ import numpy as np
 import design_samples
 from plantar.design.known import Known
 from plantar.design.rehearsals.rehearsal import Rehearsal
-from plantar.design.story import Design, DesignSettings
 from plantar.design.writing.foretold import foretold
-from plantar.twin.robots import hrp2
 
-# Of a motion, all that is looked at: what it was made for. Nothing was searched or played.
-UNPLAYED = Design(
-    settings=DesignSettings(design_samples.STIFFNESS), robot=hrp2.robot(), told=design_samples.told(),
-    factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None,
-    coefficients=np.zeros(0), trajectory=None, rehearsals=(), pairs=0,
- known=None)  # fmt: skip
+UNPLAYED = design_samples.unplayed()
 
 
 def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:

@@ -66,7 +66,7 @@ def wide(*draws: tuple[float, float] | None, verdict: str = "usable") -> Rehears
 def test_half_widths_are(played: list[Rehearsal], widths: list[float | None]) -> None:
     rehearsals = tuple(replace(one, factor=float(place)) for place, one in enumerate(played))
     found = promised.half_widths(
-        replace(design_samples.designed(), rehearsals=rehearsals), "roll", "stiffness"
+        replace(design_samples.unplayed(), rehearsals=rehearsals), "roll", "stiffness"
     )
     assert list(found.values()) == pytest.approx(widths)
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from export_robots import write_mjcf
 from plantar.exporters import export
 
 URDF_LIGHT = """<inertial><mass value="0.05" />
@@ -123,3 +124,23 @@ def test_a_sole_of_mujoco_hangs_on_three_springs(feet: dict[str, Any], tmp_path:
     same(sole.find("inertial"), f'<inertial mass="0.05" pos="{CENTRE}" diaginertia="0.0001 0.0001 0.0001" />')
     apart = [each.get("body1") for each in root.findall("contact/exclude") if each.get("body2") == SOLE]
     assert sorted(map(str, apart)) == [ANKLE, "left_sensor", "left_shin", "left_sole"]
+
+
+def test_a_sole_of_mujoco_touches_no_toe_that_its_ankle_did_not(feet: dict[str, Any], tmp_path: Path) -> None:
+    """Bodies welded to the toe included; what hangs on the toe's own joint may be touched."""
+    model = write_mjcf(tmp_path / "robot.xml")
+    root = ET.parse(model).getroot()
+    ankle = root.find(f".//body[@name='{ANKLE}']")
+    assert ankle is not None
+    above = ankle
+    for name, jointed in (("toe", True), ("cap", False), ("nail", True)):
+        above = ET.SubElement(above, "body", name=name, pos="0.05 0 0")
+        if jointed:
+            ET.SubElement(above, "joint", name=f"{name}_joint", axis="0 1 0")
+        ET.SubElement(above, "geom", type="sphere", size="0.01")
+    model.write_text(ET.tostring(root, encoding="unicode"))
+    export(feet, "mjcf", tmp_path / "out.xml", model)
+    written = ET.parse(tmp_path / "out.xml").getroot()
+    apart = [each.get("body1") for each in written.findall("contact/exclude") if each.get("body2") == SOLE]
+    assert {"toe", "cap", "left_shin"} <= set(apart)
+    assert "nail" not in apart

@@ -56,6 +56,9 @@ def test_mc_rtc_and_the_observer_are_read_back(feet: dict[str, Any], tmp_path: P
     assert contacts["pitch"] == pytest.approx((457, 20.08))
     assert contacts["roll"] == pytest.approx((337.5, 22.84))
     assert contacts["z"] == (40000, 400)
+    rigid = (tmp_path / "k.yaml").read_text().replace("400", "0")
+    (tmp_path / "k.yaml").write_text(rigid)
+    assert read_contacts(tmp_path / "k.yaml")["z"] == (0, 0), "none at all is a number, too"
 
 
 @pytest.mark.parametrize(

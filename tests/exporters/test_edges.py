@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +145,29 @@ def test_a_slip_becomes_that_of_the_swing_in_the_middle_of_the_identified_motion
     assert (kept.stiffness, kept.slip) == (400.0, Slip(4.0, 0.01))
     alone, _ = sprung(*SLIPS, result={"validation": scores})
     assert alone.stiffness == 400.0, "no stiffness to make an angle of"
+
+
+@pytest.mark.parametrize(("swing", "taken"), [(0.0, False), (1e-3, True), (0.999, True), (1.001, False)])
+def test_the_motions_show_no_swing_where_they_have_none_or_more_than_a_radian(
+    swing: float, taken: bool
+) -> None:
+    law = {"foot": "left", "axis": "pitch", "linear_equivalent": {"stiffness": 500.0, "damping": 30.0}}
+    mean = 500.0 * swing * 2 / np.pi
+    scores = [{"kind": "direct", "foot": "left", "axis": "pitch", "zero_mean_abs": mean}]
+    made, _ = sprung(*SLIPS, result={"laws": [law], "validation": scores})
+    wanted = sprung(*SLIPS, swing=swing)[0].stiffness if taken else 500.0
+    assert made.stiffness == pytest.approx(wanted)
+
+
+def test_a_sole_rests_where_its_springs_do_and_is_not_turned_about_an_axis_without_one() -> None:
+    lean, roll = 0.01, Spring("roll", 300.0, 10.0, -6.0)
+    pitched = np.array([[np.cos(lean), 0, -np.sin(lean)], [0, 1, 0], [np.sin(lean), 0, np.cos(lean)]])
+    assert foot().turn_at_rest == pytest.approx(pitched, abs=1e-12)
+    rolled = replace(foot(), springs=(roll, Spring("z", 4e4, 400.0, 20.0))).turn_at_rest
+    assert rolled[:, 0] == pytest.approx([1.0, 0.0, 0.0])
+    assert rolled[2, 1] == pytest.approx(np.sin(0.02))
+    both = replace(foot(), springs=(*foot().springs, roll)).turn_at_rest
+    assert both == pytest.approx(pitched @ rolled)
 
 
 def test_an_offset_is_the_mean_of_the_motions() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -58,3 +59,20 @@ def test_a_file_is_as_it_is_kept(target: str, model: str | None, kind: str, tmp_
     text = f"{out.read_text()}\n{said}".replace(str(tmp_path), "FOLDER")
     name = "_".join([target, *([model.replace(" ", "_")] if model else []), kind])
     assert_as_kept(text, KEPT / f"{name}.txt", share=1e-4 if "contact" in target else 1e-6)
+
+
+@pytest.mark.usefixtures("contact_at_one_step")
+@pytest.mark.parametrize(("model", "hysteresis", "pivot"), [(None, False, "bush"), ("mjcf", True, "ground")])
+def test_a_foot_on_points_is_as_it_is_kept(
+    model: str | None, hysteresis: bool, pivot: str, tmp_path: Path
+) -> None:
+    """As far as an engine of another version finds the same points."""
+    urdf = write_urdf(tmp_path / "biped.urdf", rigid_legs=model is None)
+    given, out = MODELS[model](tmp_path) if model else None, tmp_path / "out.xml"
+    options = {"hysteresis": hysteresis, "pivot": pivot, "swing": None if hysteresis else 0.02}
+    notes = export(rubber(urdf), "mujoco-contact", out, given, with_offset=True, **options)
+    said = "".join(f"{note.severity} {note.code}: {note.text}\n" for note in notes)
+    text = re.sub(
+        r"[\d.]+ %(?=, C|, at)", "0 %", f"{out.read_text()}\n{said}".replace(str(tmp_path), "FOLDER")
+    )
+    assert_as_kept(text, KEPT / f"points_{model or 'alone'}.txt", share=1e-2, least=2e-5)

@@ -42,6 +42,24 @@ def test_a_link_without_weight_gets_a_tenth_of_a_gram(tmp_path: Path) -> None:
     np.testing.assert_allclose(model.body("left_shin").inertia, 1e-7, rtol=1e-6)
 
 
+@pytest.mark.parametrize(("name", "kept"), [("cover.STL", True), ("cover.stl", True), ("cover.dae", False)])
+def test_meshes_that_mujoco_reads_stay_whatever_case_their_ending_has(
+    name: str, kept: bool, tmp_path: Path
+) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    corners = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]], dtype="<f4")
+    faces = [corners[[0, 2, 1]], corners[[0, 1, 3]], corners[[0, 3, 2]], corners[[1, 2, 3]]]
+    solid = b"".join(bytes(12) + face.tobytes() + bytes(2) for face in faces)
+    (tmp_path / name).write_bytes(bytes(80) + len(faces).to_bytes(4, "little") + solid)
+    urdf, out = write_urdf(tmp_path / "b.urdf"), tmp_path / "o.xml"
+    urdf.write_text(urdf.read_text().replace('<box size="0.08 0.08 0.4"/>', f'<mesh filename="{name}"/>', 1))
+    notes = [note.text for note in export(result(urdf), "mjcf", out) if note.code == "export_mesh"]
+    assert notes == (
+        [] if kept else [f"meshes MuJoCo cannot read, left out, so those links touch nothing: {name}"]
+    )
+    assert mujoco.MjModel.from_xml_path(str(out)).nmesh == kept
+
+
 @pytest.mark.parametrize("share", [0.65, 0.75])
 def test_a_bush_that_is_quicker_than_the_time_step_is_named(share: float, tmp_path: Path) -> None:
     """C/K of the left pitch below and above 0.7 of the exported step of a millisecond."""

@@ -43,6 +43,15 @@ def test_fixed_children_are_glued_to_this_link(tmp_path: Path) -> None:
     np.testing.assert_allclose(tree.in_model("cell")[:3, 3], [0.1, 0, 0.8])
 
 
+def test_of_a_robot_beside_another_the_first_is_extended(tmp_path: Path) -> None:
+    other = SDF.partition("<model")[2].rpartition("</sdf>")[0].replace('name="arm"', 'name="other"')
+    path = tmp_path / "two.sdf"
+    path.write_text(
+        SDF.format(shape="<sphere/>").replace("</sdf>", f"<model{other.format(shape='<sphere/>')}</sdf>")
+    )
+    assert SdfTree.load(path, ("ankle",)).model.get("name") == "arm"
+
+
 @pytest.mark.parametrize(
     ("shape", "half"),
     [

@@ -30,6 +30,17 @@ def test_an_empty_sensor_is_named_with_its_time(robot: RobotModel, log: MotionLo
     assert "10 % of the log" in found.text
 
 
+def test_gaps_are_a_share_of_what_was_chosen_of_a_long_recording(robot: RobotModel, log: MotionLog) -> None:
+    """Of its 20 s ten are no gap: others tell more."""
+    holed = emptied(log, "wrench.left", (log.time > 4) & (log.time < 6))
+    kept = (log.time < 8) | (log.time >= 18)
+    columns = {name: values[kept] for name, values in holed.columns.items()}
+    chosen = MotionLog(holed.name, log.time[kept], columns, left_out=((7.99, 18.0),))
+    (found,) = check_gaps(robot, chosen)
+    assert "'wrench.left.*': 1 gap" in found.text
+    assert "20 % of the log" in found.text
+
+
 def test_rows_that_are_missing_count_too(robot: RobotModel, log: MotionLog) -> None:
     kept = log.time % 5 > 0.5
     thin = MotionLog(log.name, log.time[kept], {name: log.column(name)[kept] for name in log.columns})

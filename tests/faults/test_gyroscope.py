@@ -70,6 +70,17 @@ def test_small_turns_tell_where_the_imu_s_noise_is_less(
     assert codes(changed(few, factor * few.stack(GYROSCOPE) + [0.02, -0.01, 0.03])) == found
 
 
+def test_turns_count_from_six_times_the_noise_of_both_their_ends_on(log: MotionLog) -> None:
+    """And of the rates between them, half a second; of all three axes together."""
+    few = small(log)
+    orientation = few.orientation("chest")
+    assert orientation is not None
+    turns = Turns.of(few, "chest", orientation)
+    assert turns is not None
+    ends, between = np.sqrt(2) * 2e-5, 2e-4 * np.sqrt(0.5 * log.period)
+    assert turns.least == pytest.approx(6 * np.sqrt(3) * np.hypot(ends, between), rel=0.08)
+
+
 def test_turns_that_drown_in_noise_tell_nothing(log: MotionLog) -> None:
     few = small(log)
     noise = 2e-3 * np.random.default_rng(1).standard_normal((len(log), 3))

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from biped import SLIPPING, TRUTH, record, sway
-from biped_robot import Frame, Mounting, make_robot
+from biped import SLIPPING, TRUTH, BushModel, record, sines, sway
+from biped_robot import FEET, Frame, Mounting, make_robot, robot_entry
 from feet_trials import noisy, shifted, stepping, without
 from kept_texts import assert_as_kept, lines_of
 from plantar.conventions import Array
@@ -18,6 +19,7 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 from plantar.signals.filters import low_pass
 
@@ -44,11 +46,75 @@ def swayed(*seeds: int, seconds: float = 20.0, **changes: object) -> list[Motion
 
 @dataclass(frozen=True)
 class Campaign:
-    """Logs to fit, then one to validate; what the robot file says of errors."""
+    """Logs to fit, then one to validate; what the robot file says of errors, of half of a sole's length [m], and how
+    feet stand."""
 
     logs: Callable[[], Sequence[MotionLog]]
     settings: FeetSettings = field(default_factory=FeetSettings)
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    half: float = 0.13
+    contact: str = "auto"
+
+    def robot(self, folder: Path) -> RobotModel:
+        entry: Any = robot_entry()
+        for foot in entry["feet"].values():
+            foot["sole"]["polygon"] = [
+                [x * self.half, y] for x, y in ((1, 0.08), (-1, 0.08), (-1, -0.08), (1, -0.08))
+            ]
+            foot["contact"] = self.contact
+        return replace(make_robot(folder, feet=entry["feet"]), uncertainty=self.uncertainty)
+
+
+@dataclass(frozen=True)
+class Tipping(BushModel):
+    """A bush under a sole that tips at 8.5 N·m: the foot turns on."""
+
+    def torque(self, deflection: Array, rate: Array) -> Array:
+        return np.clip(super().torque(deflection, rate), -8.5, 8.5)
+
+
+def tipping() -> list[MotionLog]:
+    """Both feet pitch far, over edges 29 mm from the middle, and roll a little."""
+    pitching = {
+        key: Tipping(law.stiffness, law.damping, 0.0) for key, law in TRUTH.items() if key[1] == "pitch"
+    }
+    truth = {key: replace(law, offset=0.0) for key, law in TRUTH.items()} | pitching
+    logs = []
+    for seed, (degrees, rate) in enumerate(((2.5, 0.25), (2.0, 0.31), (1.8, 0.28))):
+        ankles = {
+            foot: (sines((np.radians(degrees), rate, 0.3)), sines((np.radians(0.8), 0.31, 0.0)))
+            for foot in FEET
+        }
+        still = (sines((0.0, 0.0, 0.0)),) * 3
+        motion = sway(f"tip_{seed}", seed, torso=still, ankles=ankles, shift=0.0, truth=truth)
+        logs.append(noisy(record(motion), seed))
+    return logs
+
+
+def unlike() -> list[MotionLog]:
+    """Of four logs one is of other rubber, one late, and the last, unseen one of a foot that is half as stiff."""
+    truth, half = (
+        {key: replace(law, stiffness=share * law.stiffness) for key, law in TRUTH.items()}
+        for share in (1.1, 0.5)
+    )
+    usual, (stiff,), (soft,) = swayed(0, 1), swayed(2, truth=truth), swayed(5, truth=half)
+    return [usual[0], late(usual[1], "wrench", 0.01), stiff, *swayed(4), soft]
+
+
+def faint() -> list[MotionLog]:
+    """Feet that hardly turn beside noise, one of them once quickly and one only slowly."""
+    ankles = {
+        "left": (sines((2e-4, 0.3, 0.1)), sines((8e-4, 0.4, 1.0))),
+        "right": (sines((6e-4, 0.04, 0.5)), sines((1e-3, 0.3, 2.0), (1e-3, 0.9, 0.0))),
+    }
+    still, logs = (sines((0.0, 0.0, 0.0)),) * 3, []
+    for seed in (1, 2, 3):
+        log = record(sway(f"faint_{seed}", seed, 16.0, ankles=ankles, torso=still))
+        loud = noisy(log, seed)
+        logs.append(
+            log.with_columns({name: 3 * loud.column(name) - 2 * log.column(name) for name in log.columns})
+        )
+    return logs
 
 
 def walking() -> list[MotionLog]:
@@ -114,13 +180,17 @@ CAMPAIGNS = {
     "misread": Campaign(misread, uncertainty=Uncertainty(between_recordings=0.02)),
     "poor": Campaign(poor, uncertainty=Uncertainty(joint_compliance=2e-5)),
     "lifting": Campaign(lifting),
+    "tipping": Campaign(tipping, FeetSettings(wrench_delay=0.0), half=0.03),
+    "tipping_zeroed": Campaign(tipping, FeetSettings(wrench_delay=0.0), contact="always"),
+    "unlike": Campaign(unlike),
+    "faint": Campaign(faint, FeetSettings(wrench_delay=0.0)),
 }
 
 
 @pytest.mark.parametrize("name", CAMPAIGNS)
 def test_a_result_is_as_it_is_kept(name: str, tmp_path: Path) -> None:
     campaign = CAMPAIGNS[name]
-    robot = replace(make_robot(tmp_path), uncertainty=campaign.uncertainty)
+    robot = campaign.robot(tmp_path)
     *fitted, unseen = campaign.logs()
     result = identify_feet(robot, fitted, [unseen], campaign.settings)
     content = result.to_dict()

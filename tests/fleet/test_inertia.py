@@ -75,9 +75,15 @@ def test_a_broken_log_is_told_and_left_out(client: Any, folder: Path) -> None:
     assert [Path(entry.path).name for entry in found.inputs] == ["log_0.parquet", "log_1.parquet"]
     (note,) = (note for note in found.notes if note.code == "log_left_out")
     assert note.text.startswith(f"{broken}: is not a readable Parquet file")
-    with pytest.raises(DataError, match="none of the first 1 logs can be used"):
+    other = folder / "other.parquet"
+    other.write_bytes(b"PAR1")
+    with pytest.raises(DataError, match=r"none of the first 2 logs can be used: .*broken\.parquet"):
         inertia_over(
-            client, str(folder / "biped.yaml"), [str(broken)], settings=None, progress=lambda _: None
+            client,
+            str(folder / "biped.yaml"),
+            [str(broken), str(other)],
+            settings=None,
+            progress=lambda _: None,
         )
 
 
@@ -87,7 +93,10 @@ def test_the_command_writes_what_identify_inertia_writes(
     rows = [("g", "biped.yaml", Path(log).name, "", "", "") for log in logs(folder)[:2]]
     unseen = ("g", "biped.yaml", "log_2.parquet", "validate", "", "")  # takes no part
     manifest, out = write_manifest(folder / "fleet.csv", [*rows, unseen]), folder / "out"
-    assert run("fleet", "inertia", manifest, "--out", out, "--workers", "1", "--quiet") == 0
+    assert run("fleet", "inertia", manifest, "--out", out, "--workers", "1") == 0
+    assert capsys.readouterr().out.split()[-3:] == [
+        str(out / name) for name in ("result.json", "identified.urdf", "report.html")
+    ]
     assert_same(DynamicsResult.load(out), identify_inertia(folder / "biped.yaml", logs(folder)[:2]))
     assert (out / "identified.urdf").is_file()
     assert (out / "report.html").is_file()

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from damaged import told
+from kept_texts import assert_as_kept
 from plantar.errors import PlantarError
 from plantar.fleet.manifest import Log, read_manifest, written
 
@@ -70,3 +72,32 @@ def test_a_wrong_manifest_is_one_line(text: str, said: str, tmp_path: Path) -> N
     assert said in str(told.value)
     assert str(path) in str(told.value)
     assert "\n" not in str(told.value)
+
+
+def test_a_manifest_with_one_thing_wrong_is_as_it_is_kept(tmp_path: Path) -> None:
+    """In its head or in one cell, or a row that is gone, twice or cut."""
+    table = [
+        HEAD.strip().split(","), ["a", "r.yaml", "1.csv", "fit", "2026-05-04T09:30:00Z", "u"],
+        ["a", "r.yaml", "2.csv", "validate", "", "u"], ["b", "s.yaml", "s3://x/3.csv", "", "2026-05-03", ""],
+    ]  # fmt: skip
+
+    def read(rows: list[list[str]]) -> str:
+        found = read_manifest(manifest(tmp_path, "\n".join(",".join(row) for row in rows) + "\n"))
+        return "; ".join(f"{one.name} {one.robot} {one.time} {one.unit} {one.logs}" for one in found)
+
+    cases = {"whole": table}
+    for line, row in enumerate(table):
+        beside = [table[:line], table[line + 1 :]]
+        cases |= {
+            f"{line} gone": [*beside[0], *beside[1]],
+            f"{line} twice": [*beside[0], row, row, *beside[1]],
+        }
+        for place in range(len(row)):
+            cases[f"{line} cut at {place}"] = [*beside[0], row[:place], *beside[1]]
+            for other in ("", "x", "-1", '"', "2026-02-31"):
+                changed = [*row[:place], other, *row[place + 1 :]]
+                cases[f"{line} {place} {other!r}"] = [*beside[0], changed, *beside[1]]
+    lines = [f"{where}: {told(read, rows)}\n" for where, rows in cases.items()]
+    assert_as_kept(
+        "".join(lines).replace(str(tmp_path), "FOLDER"), Path(__file__).parent / "kept" / "manifest.txt"
+    )

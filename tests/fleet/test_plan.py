@@ -79,6 +79,7 @@ def test_without_a_date_in_the_log_its_name_or_file_says(tmp_path: Path) -> None
     [
         ("rosbag2_2026_05_04-09_30_00", MAY),
         ("20260504T093000Z_sway", MAY),
+        ("sway_20260504_093017", MAY.replace(second=17)),
         ("sway-2026-05-04", MAY.replace(hour=0, minute=0)),
         ("2025-01-01_sway_2026-05-04_09.30", MAY),
         ("2026-02-31", None),

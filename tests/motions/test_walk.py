@@ -15,7 +15,7 @@ from kept_texts import assert_as_kept, described
 from plantar.contact.balance import planned_wrench, sole_outlines, zero_moment_point
 from plantar.contact.polygon import convex_hull, inside_distance
 from plantar.errors import MotionError
-from plantar.motions import Plan, plan_motion, walk
+from plantar.motions import Plan, Walk, plan_motion, walk
 from plantar.motions.body import Body
 from plantar.motions.feasible import check, configurations
 from plantar.motions.footsteps import CLEARANCE, footsteps
@@ -99,6 +99,16 @@ def test_feet_alternate_and_equal_trials_are_equal() -> None:
     floors = [[swing.floor for swing in steps.swings] for steps in (first, again, other)]
     assert floors[0] == floors[1] != floors[2]
     assert 0 < np.abs(floors[0]).max() <= 0.06 * 0.05
+
+
+@pytest.mark.parametrize("order", [("left", "right"), ("right", "left")])
+def test_the_feet_on_the_floor_are_named_in_one_order(order: tuple[str, str]) -> None:
+    """Of whatever order the robot file has them in."""
+    stands = {foot: np.array([True, foot == "left", False]) for foot in order}
+    plan = Plan("walk", np.arange(3.0), (), np.zeros((3, 0)), np.zeros((3, 4, 4)), frozenset(order), {})
+    walking = replace(plan, walk=Walk({}, stands, np.zeros((3, 2)), np.zeros((3, 3))))
+    assert [walking.standing_at(row) for row in range(3)] == [["left", "right"], ["left"], []]
+    assert plan.standing_at(2) == ["left", "right"]
 
 
 def test_the_pendulum_obeys_its_law() -> None:

@@ -12,6 +12,7 @@ from drawn_again import DRAWN_AGAIN
 from drawn_anew import DRAWN_ANEW
 from drawn_at_random import DRAWN_AT_RANDOM
 from drawn_blind import DRAWN_BLIND
+from drawn_by_hand import DRAWN_BY_HAND
 from drawn_by_lot import DRAWN_BY_LOT
 from drawn_everywhere import DRAWN_EVERYWHERE
 from drawn_last import DRAWN_LAST
@@ -21,6 +22,7 @@ from fleet_statistics import FLEET
 from handed_on import HANDED_ON
 from in_their_place import IN_THEIR_PLACE
 from kept_outputs import KEPT
+from kept_parts import KEPT_PARTS
 from literal_edges import LITERAL_EDGES
 from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
@@ -64,4 +66,6 @@ LISTS = {
     "in_their_place": IN_THEIR_PLACE,
     "by_hand": BY_HAND,
     "kept_outputs": KEPT,
+    "kept_parts": KEPT_PARTS,
+    "drawn_by_hand": DRAWN_BY_HAND,
 }

@@ -86,6 +86,12 @@ def late(log: MotionLog, part: str, seconds: float) -> MotionLog:
     )
 
 
+def told_of(foot: str, axis: str) -> tuple[tuple[str, float], tuple[str, float]]:
+    """Of each foot and axis another slip torque and angle."""
+    place = [*TRUTH].index((foot, axis))
+    return ("slip_torque", 4.0 + 0.3 * place), ("slip_angle", 0.006 + 0.0005 * place)
+
+
 def result(**model: object) -> FeetResult:
     """A batch result in which all four axes have one model."""
     models = tuple(
@@ -94,7 +100,7 @@ def result(**model: object) -> FeetResult:
     )
     rows = tuple(
         Parameter(foot, axis, name, "", value, 0.05 * value, (0.9 * value, 1.1 * value), 0.1, "usable", "")
-        for foot, axis in TRUTH for name, value in (("slip_torque", 4.0), ("slip_angle", 0.006))
+        for foot, axis in TRUTH for name, value in told_of(foot, axis)
     )  # fmt: skip
     told = rows if model.get("model") == "elastoplastic" else ()
     return FeetResult(
@@ -114,6 +120,10 @@ LOGS: dict[str, Callable[[], tuple[MotionLog, FeetResult | None]]] = {
     "faulty": lambda: (faulty(swayed()), None),
     "faulty as told": lambda: (faulty(swayed(truth=SLIPPING)), result(model="elastoplastic")),
     "coarse as told": lambda: (coarse(swayed(truth=SLIPPING)), result(model="elastoplastic")),
+    "coarse steps as told": lambda: (
+        coarse(swayed(truth=SLIPPING, lifts=LIFTS)),
+        result(model="elastoplastic"),
+    ),
     "late forces": lambda: (late(swayed(), "wrench", 0.03), None),
     "late imu": lambda: (late(swayed(), "imu", 0.03), None),
     "without attitude": lambda: (without(swayed(), "orientation"), None),

@@ -98,6 +98,8 @@ def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
     (text,) = reach(replace(result, validation=lost))
     assert text.endswith("m4 left pitch (2.0 against 1.0 N·m) and 3 more (marked in the table).")
     assert "in 0 of 8 cases" in text
+    (text,) = reach(replace(result, validation=lost[:6]))
+    assert text.endswith("m4 left pitch (2.0 against 1.0 N·m) and m5 left pitch (2.0 against 1.0 N·m).")
 
 
 @pytest.mark.parametrize(("verdict", "told"), [("usable", True), ("weak", True), ("unidentifiable", False)])

@@ -16,11 +16,11 @@ from plantar.robot_guess.bush import _height, bush_shift
 COUNT = 3000
 
 
-def about(height: float, noise: float = 0.0) -> Recording:
+def about(height: float, noise: float = 0.0, stiffness: float = 400.0) -> Recording:
     """Torques about a point that lies `height` [m] above the centre: by height·F_x in pitch, -height·F_y in roll."""
     angle = swayed(COUNT)
     rate = np.gradient(angle, PERIOD)
-    made = made_recording("sway", angle, 400.0 * angle + 20.0 * rate, rate=rate)
+    made = made_recording("sway", angle, stiffness * angle + 20.0 * rate, rate=rate)
     state = made.bushes[FOOT]
     wrench = state.wrench.copy()
     wrench[:, 0], wrench[:, 1] = 3000.0 * swayed(COUNT, seed=1), 2000.0 * swayed(COUNT, seed=2)
@@ -56,6 +56,11 @@ def test_a_recording_in_pieces_shows_the_same_height_with_an_offset_of_its_own_i
 def test_a_torque_that_no_bush_explains_shows_none() -> None:
     assert _height([about(0.03, noise=8.0)], FOOT, 0) is None
     assert _height([], FOOT, 0) is None
+
+
+def test_a_torque_that_pushes_along_shows_none() -> None:
+    assert _height([about(0.03, stiffness=5.0)], FOOT, 0) == pytest.approx(0.03, abs=1e-3)
+    assert _height([about(0.03, stiffness=-5.0)], FOOT, 0) is None
 
 
 @pytest.mark.parametrize(

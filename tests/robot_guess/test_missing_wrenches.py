@@ -9,6 +9,7 @@ import pytest
 
 from biped import record, sway
 from biped_robot import make_robot
+from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.robot.schema import read_robot_file
@@ -58,6 +59,15 @@ def test_a_file_is_written_that_says_what_is_missing(
         f"# DOUBT: thin: {named} missing: nothing of the feet could be checked (valid: "
     )
     assert sum("wrench: {name: left," in line for line in lines) == 1
+
+
+def test_a_log_without_a_leg_is_refused_whether_or_not_it_has_its_wrenches(
+    whole: MotionLog, tmp_path: Path
+) -> None:
+    leg = [name for name in whole.columns if name.startswith("joint.left_")]
+    for columns in (leg, [*LEFT, *leg]):
+        with pytest.raises(LogError, match="do not hold any joint between IMU and left foot"):
+            guessed(tmp_path, without(whole, *columns))
 
 
 def test_the_logs_that_are_whole_are_looked_at_all_the_same(whole: MotionLog, tmp_path: Path) -> None:

@@ -142,6 +142,7 @@ def test_an_attitude_is_put_right_as_far_as_robots_sway(hertz: float, left: floa
     bushes = {"left": SimpleNamespace(sole_position=place)}
     contacts = {"left": SimpleNamespace(standing=np.ones(len(time), dtype=bool))}
     felt = np.column_stack([none, none, GRAVITY + none])
+    orientation.flags.writeable = False  # as a log's is
     right = put_right(orientation, felt, bushes, contacts, 0.005)  # type: ignore[arg-type]
     inner = slice(600, -600)
     found = 2 * right[inner, 2]

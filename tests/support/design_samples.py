@@ -6,6 +6,7 @@ import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -113,6 +114,16 @@ def identified_once(name: str) -> Callable[[Rehearsal, RobotModel, int], tuple[F
         return found[key]
 
     return identify
+
+
+def unplayed() -> Design:
+    """Of a motion what it was made for: nothing was searched or played."""
+    nothing: Any = None
+    return Design(
+        settings=DesignSettings(STIFFNESS), robot=hrp2.robot(), told=told(), factors=(0.5, 2.0),
+        least_stiffness=240.0, legs=nothing, lines=nothing, coefficients=np.zeros(0), trajectory=nothing,
+        rehearsals=(), pairs=0, known=None,
+    )  # fmt: skip
 
 
 @cache

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from biped import record as record_of_feet
+from biped import sway
 from biped_robot import make_robot
+from feet_trials import noisy, without
 from kept_texts import assert_as_kept, described
 from plantar.twin.bush import PAPER
 from plantar.twin.other_rubber import on_other_rubber
 from plantar.twin.presets import PRESETS
 from plantar.twin.recording import record
+from plantar.twin.replay import Record, beside, moved_onto, pitch_and_roll, plan_of, record_of
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.robots.true_robot import RobotSpread, true_robot
@@ -82,6 +87,36 @@ def test_the_scene_is_as_it_is_kept(tmp_path: Path) -> None:
         assert_as_kept(
             urdf_text(describe(robot)).replace("><", ">\n<"), KEPT / f"{name}_urdf.txt", share=1e-5
         )
+
+
+@pytest.mark.parametrize("efforts", [True, False])
+def test_what_is_played_again_is_as_it_is_kept(efforts: bool, tmp_path: Path) -> None:
+    """A recorded motion as a plan, led by a hand or not, and a rollout beside the record."""
+    robot = make_robot(tmp_path)
+    log = without(noisy(record_of_feet(sway("sway", 3, 8.0)), 3), *(() if efforts else (".effort",)))
+    made = plan_of(robot, log)
+    record = record_of(robot, log, made)
+    turned = record_of(robot, noisy(record_of_feet(sway("bow", 4, 8.0)), 4), made)
+    played = hrp2.robot(), imagined()
+    told = {
+        "plan": made,
+        "record": record,
+        "moved": pitch_and_roll(moved_onto(record.attitude, turned.attitude)),
+    }
+    if efforts:
+        plan_there, time = plan("Tilt3"), played[1].time
+        there = replace(short(plan_there, 4.0, 6.0), time=time)
+        taken = beside(
+            played[0], there, "soft", played[1], Record(torques(time), turned.attitude[: time.size])
+        )
+        errors = [taken.torque_error(*place) for place in taken.torque]
+        told |= {"beside": taken, "errors": errors, "chest": [taken.chest_error(), taken.chest_error(1.0)]}
+    assert_as_kept(described(told), KEPT / f"played_again_{efforts}.txt", share=1e-4, least=1e-7)
+
+
+def torques(time: np.ndarray) -> dict[tuple[str, str], np.ndarray]:
+    places = [(foot, axis) for foot in ("left", "right") for axis in ("pitch", "roll")]
+    return {place: np.sin((1 + number) * time) for number, place in enumerate(places)}
 
 
 def test_a_robot_that_is_drawn_is_as_it_is_kept() -> None:

@@ -88,6 +88,21 @@ def test_extras_beside_known_parameters_are_least_squares_some_of_them_bounded(
         assert found[3] == pytest.approx(rows[:, 3] @ target / (rows[:, 3] @ rows[:, 3]))
 
 
+def test_extras_beside_known_parameters_are_judged_by_the_fold_that_they_have_not_seen(
+    problem: tuple[list[dict[int, np.ndarray]], Folds], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rows weigh as they miss with all folds."""
+    _, folds = problem
+    inertial = np.array([0.5, -1.0, 2.0])
+    monkeypatch.setattr(Folds, "triangle", lambda *_: None)
+    made = RegularisedProblem(None, SimpleNamespace(cad=inertial), folds)  # type: ignore[arg-type]
+    (found,) = made.with_known(inertial).held_out
+    whole = folds.with_known([0, 1], inertial)
+    weights = {row: folds.error([0, 1], row, whole) ** -0.5 for row in (0, 7)}
+    other = [folds.weighted_error([own], folds.with_known([1 - own], inertial), weights) for own in (0, 1)]
+    assert found.errors == pytest.approx(np.array(other))
+
+
 def test_pooled_factors_hold_all_samples() -> None:
     parts = [dense(count, 1) for count in (10, 15)]
     whole = pooled([factor(part, 1) for part in parts])

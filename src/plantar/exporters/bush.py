@@ -60,6 +60,12 @@ class FootBush:
         """The axis as a unit vector in the ankle's frame, (3,): pitch about y, roll about x, z along z."""
         return self.rotation[:, {"roll": 0, "pitch": 1, "z": 2}[axis]]
 
+    @property
+    def turn_at_rest(self) -> Array:
+        """R_ankle_sole where no spring pushes, in the bush's axes, (3, 3): Ry(pitch) Rx(roll)."""
+        rest = {spring.axis: spring.rest for spring in self.springs}
+        return rotation_from_rpy(np.array([rest.get("roll", 0.0), rest.get("pitch", 0.0), 0.0]))
+
     def depth(self, point: Array) -> float:
         """How far a point of the ankle's frame lies below the bush centre, along the bush's z [m]."""
         return float(-(self.rotation[:, 2] @ (np.asarray(point) - self.centre)))

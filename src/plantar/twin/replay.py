@@ -210,7 +210,7 @@ def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan
     if not standing:
         raise DataError("no foot carries the robot", path=log.source)
     base = np.tile(_root(robot, recorded.positions(robot)[0], soles, standing), (time.size, 1, 1))
-    stance = {name: soles[name] for name in standing}
+    stance = {name: soles[name] for name in soles if name in standing}
     return Plan(log.name, time, robot.joint_names, positions, base, standing, stance, hand)
 
 

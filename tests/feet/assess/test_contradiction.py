@@ -42,6 +42,15 @@ def test_motions_that_are_missed_although_the_liveliest_is_not() -> None:
     assert missed_motions([]) == []
 
 
+def test_the_liveliest_motion_is_the_one_that_loads_most_and_not_the_one_with_a_spike() -> None:
+    lively, lean = scored("sway", 1.0, 10.0), scored("lean", 3.0, 5.0)
+    spiked = replace(
+        scored("squat", 0.4, 0.9), max_abs=100.0
+    )  # a tenth of the liveliest's, and missed by half
+    assert missed_motions([lively, lean, spiked]) == [lean]
+    assert missed_motions([lively, replace(spiked, mean_abs_error=0.7)]) == []
+
+
 @pytest.mark.parametrize(
     ("liveliest", "share", "load", "missed"),
     [

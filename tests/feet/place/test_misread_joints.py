@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from biped import record, sines, sway
 from feet_trials import LINEAR, codes, noisy, stepping, without
 from plantar.feet.identify import identify_feet
-from plantar.feet.place.misread_joints import MISREAD, OUT_OF_TIME
+from plantar.feet.place.misread_joints import MISREAD, OUT_OF_TIME, _misread
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
@@ -216,3 +218,41 @@ def test_it_has_to_explain_a_third_of_what_is_left(
             misread(log.with_columns({"wrench.left.torque.y": torque + more}), "left_ankle_pitch", 1.1)
         )
     assert bool(said(identify_feet(robot, rough, settings=LINEAR))) == told
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "std", "singular", "moved", "said"),
+    [
+        ("gain", 0.05, 0.002, False, 30.0, True),
+        ("gain", -0.05, 0.002, False, 30.0, True),
+        ("gain", 0.05, 0.002, True, 30.0, False),  # what columns that hang together tell is no error
+        ("gain", 0.05, 0.02, False, 30.0, False),  # hardly known
+        ("gain", 0.9, 0.002, False, 30.0, False),  # no encoder reads that
+        ("play", -0.002, 5e-5, False, 30.0, False),  # no drive is ahead of its joint
+        ("play", 0.002, 5e-5, False, 30.0, True),
+    ],
+)
+def test_an_error_of_a_joint_is_surely_known_and_of_a_size_that_there_is(
+    kind: str, size: float, std: float, singular: bool, moved: float, said: bool
+) -> None:
+    """It matters where it moves stiffness and damping out of their interval."""
+    usual, asked = np.array([400.0, 20.0]), list[np.ndarray]()
+    fit = SimpleNamespace(
+        values=np.array([400.0 + moved, 20.0, size]),
+        std=np.array([1.0, 1.0, std]),
+        squares=7.0,
+        singular=singular,
+    )
+    wide: Any = SimpleNamespace(holds=lambda by: asked.append(by) or False)
+    wider: Any = SimpleNamespace(least_squares=fit)
+    found = _misread("knee", kind, wider, wide, usual)
+    assert (found is not None) == said
+    if found is not None:
+        assert (found.joint, found.kind, found.size, found.squares, found.matters) == (
+            "knee",
+            kind,
+            size,
+            7.0,
+            True,
+        )
+        assert asked[0][0] >= moved

@@ -21,7 +21,7 @@ from plantar.robot.uncertainty import Uncertainty
 
 @pytest.fixture(scope="module")
 def recorded() -> list[MotionLog]:
-    return [noisy(record(sway(f"sway_{seed}", seed, duration=40.0)), seed) for seed in (3, 4)]
+    return [noisy(record(sway(f"sway_{seed}", seed)), seed) for seed in (3, 4)]
 
 
 def worst(result: FeetResult) -> float:

@@ -54,6 +54,9 @@ def test_a_message_of_the_same_size_with_other_names_is_another_layout() -> None
     assert len(one) == len(two)
     rows = np.stack([np.frombuffer(one, np.uint8), np.frombuffer(two, np.uint8)])
     assert layout_of(JOINT_STATE, "cdr", one).matches(rows).tolist() == [True, False]
+    rows[1] = rows[0]
+    rows[1, 1] = 5  # an encapsulation that nobody knows
+    assert layout_of(JOINT_STATE, "cdr", one).matches(rows).tolist() == [True, False]
 
 
 @pytest.mark.parametrize(("frames", "broken"), [(200, 0), (201, 1), (230, 30)])

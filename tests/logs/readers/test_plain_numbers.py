@@ -36,9 +36,9 @@ def test_every_number_is_what_python_reads() -> None:
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 def test_columns_go_to_their_places_behind_what_is_there(end: str) -> None:
-    found, values = read(end.join(["1,no number,3", "4,,6", ""]), [1, -1, 0], 4, first=1)
-    assert found == 2
-    np.testing.assert_array_equal(values, [[-7, 3, 6, -7], [-7, 1, 4, -7]])
+    found, values = read(end.join(["1,no number,3", "4,,6", "5,,", ""]), [1, -1, 0], 5, first=1)
+    assert found == 3
+    np.testing.assert_array_equal(values, [[-7, 3, 6, np.nan, -7], [-7, 1, 4, 5, -7]])
 
 
 def test_holes_are_not_numbers() -> None:

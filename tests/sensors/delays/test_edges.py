@@ -233,3 +233,32 @@ def test_steps_that_go_back_and_forth_between_two_answers_settle(
     assert found is not None
     np.testing.assert_array_equal(found.values, np.zeros(3))
     assert told_at_last[:4] == [True, False, True, False], "both answers are tried before one stays"
+
+
+@pytest.mark.parametrize(
+    ("moved", "variances", "expected"),
+    [
+        ((0.0, 0.0), (1e-8, 1e-8), 0.0),
+        ((3e-4, 0.0), (4e-8, 1e-8), np.sqrt(9e-8 - 3e-8)),  # less what chance moves it by
+        ((3e-4, 4e-4), (1e-8, 1e-8), 5e-4),
+        (
+            (3e-4, 0.0),
+            (1e-8, 4e-8),
+            3e-4,
+        ),  # the wider one first: chance explains nothing, and takes nothing off
+    ],
+)
+def test_what_is_chosen_without_being_known_widens_the_delay_by_what_chance_does_not_move(
+    moved: tuple[float, float],
+    variances: tuple[float, float],
+    expected: float,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of encoders as tried, and found beside; cells weigh as in the common delay, which is as sure as the second."""
+    apart, together = (
+        SimpleNamespace(values=np.array([0.005 + by]), covariance=np.array([[variance]]))
+        for by, variance in zip((moved[0], 0.0), variances, strict=True)
+    )
+    monkeypatch.setattr(refining, "estimate_delays", lambda _, held: together if len(held) == 2 else apart)
+    found = refining._by_choice([], np.eye(2), 0.005 + moved[1], float(np.sqrt(variances[1])))
+    assert found == pytest.approx(expected / np.sqrt(3))

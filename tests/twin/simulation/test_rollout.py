@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from example_robots import talos_file
+from kept_texts import assert_as_kept, described
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.motions import plan_motion
@@ -137,6 +141,13 @@ def _configuration(
     for name in hrp2.robot().joint_names:
         q[model.joints[model.getJointId(name)].idx_q] = columns[f"joint.{name}.position"][row]
     return q
+
+
+@pytest.mark.parametrize("motion", [swayed, tilted, flung])
+def test_a_rollout_is_as_it_is_kept(motion: Callable[[], Rollout]) -> None:
+    """Engines of another version differ in small digits."""
+    kept = Path(__file__).parent / "kept" / f"{motion.__name__}.txt"
+    assert_as_kept(described(motion()), kept, share=1e-2, least=1e-3)
 
 
 def test_the_same_plan_gives_the_same_numbers() -> None:

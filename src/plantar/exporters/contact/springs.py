@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from plantar.conventions import Array, Axis, rotation_from_rpy
+from plantar.conventions import Array, Axis
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.fit import LOADS, NEAR
 from plantar.exporters.contact.points import Point, PointFoot, points_for, sides_of
@@ -72,8 +72,7 @@ def pushes(foot: PointFoot, load: float) -> list[float]:
 
 def placed(bush: FootBush, foot: PointFoot, weight: float) -> list[Placed]:
     """The points in the ankle's frame, turned by the springs' rest angles."""
-    rest = [spring.rest if spring else 0.0 for spring in (bush.spring("roll"), bush.spring("pitch"))]
-    turn = bush.rotation @ rotation_from_rpy(np.array([rest[0], rest[1], 0.0]))
+    turn = bush.rotation @ bush.turn_at_rest
     low = max(p.lower for p in foot.points)
     found = []
     for place, (p, push) in enumerate(zip(foot.points, pushes(foot, LOADS[0] * weight), strict=True)):

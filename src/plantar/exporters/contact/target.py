@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from plantar.conventions import GRAVITY, rotation_from_rpy
+from plantar.conventions import GRAVITY
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush, raised
 from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
@@ -95,8 +95,7 @@ def _insert(
     if quiet:
         text = f"{foot.name}: touches nothing any more, the points do: {', '.join(quiet)}"
         notes.info("export_silent", text)
-    rest = [spring.rest if spring else 0.0 for spring in (foot.spring("roll"), foot.spring("pitch"))]
-    turn = rotation_from_rpy(np.array([rest[0], rest[1], 0.0]))  # R_ankle_sole = Ry(pitch) Rx(roll)
+    turn = foot.turn_at_rest
     name = str(holder.get("name"))
     inverse_mass = model.inverse_mass(name)
     for place, point in enumerate(found.foot.points):

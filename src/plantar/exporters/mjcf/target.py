@@ -218,11 +218,12 @@ def _widen_keyframes(root: ET.Element, before: Compiled, job: Job) -> None:
     springs = [(foot, spring) for foot in job.feet for spring in foot.springs]
     names = [name for foot, spring in springs for name in (foot.joint(spring.axis), slip_joint(foot, spring))]
     added = [name for name in names if after.has_joint(name) and not before.has_joint(name)]
-    for key in keys:
+    for place, key in enumerate(keys):
         for attribute in ("qpos", "qvel"):
-            if (text := key.get(attribute)) is not None:
+            if key.get(attribute) is not None:
                 wide: Any = np.ones(after.size(attribute), bool)
                 wide[[after.address(name, attribute) for name in added]] = False
                 values = np.zeros(len(wide))
-                values[wide] = np.array(text.split(), float)
+                # As MuJoCo reads it: a short one goes on as at rest.
+                values[wide] = getattr(before.model, f"key_{attribute}")[place]
                 key.set(attribute, numbers(values))

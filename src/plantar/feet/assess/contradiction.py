@@ -82,7 +82,8 @@ def beside_drift(
         """What is missed with an IMU that is turned by `turned` (3,) [rad] beside the robot file's mount."""
         x, y, z = turned.tolist()
         found = predict(recording, replace(fitted, imu_turned=(x, y, z)))
-        return torque if found is None else quick(torque - found.torque[prediction.scored])
+        assert found is not None  # the row is a score of it
+        return quick(torque - found.torque[prediction.scored])
 
     as_fitted = np.array(fitted.imu_turned)
     missed = left(as_fitted)
