@@ -203,7 +203,7 @@ DRAWN_ANEW = (
     Mutant(
         "sensors/air_zero.py", "a line through three swings", "FEWEST_FOR_DRIFT = 4", "FEWEST_FOR_DRIFT = 3"
     ),
-    Mutant("sensors/air_zero.py", "a drift less clear", "CLEAR_DRIFT = 3.0", "CLEAR_DRIFT = 2.0"),
+    Mutant("sensors/air_zero.py", "a drift less clear", "> SHOWN * uncertainty", "> 2.0 * uncertainty"),
     Mutant(
         "sensors/attitude_scale.py",
         "what it is for what it shows",

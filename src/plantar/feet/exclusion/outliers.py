@@ -8,10 +8,10 @@ import numpy as np
 
 from plantar.contact.deflection import BushState
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
+from plantar.estimation.errors_in_variables import FEWEST
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.regression.prediction import predict
-from plantar.feet.regression.regression_data import FEWEST_SAMPLES
 from plantar.signals.medians import running_median
 from plantar.signals.segments import runs
 
@@ -29,7 +29,7 @@ def outlier_masks(recordings: Sequence[Recording], fitted: FittedModel) -> dict[
     foot, column, found = fitted.foot, ROTATIONAL_AXES.index(fitted.axis), {}
     for recording in recordings:
         used = recording.used(foot)
-        if recording.name not in fitted.offsets or used.sum() < FEWEST_SAMPLES:
+        if recording.name not in fitted.offsets or used.sum() < FEWEST:
             continue
         torque = recording.bushes[foot].torque[:, column]
         prediction = predict(recording, fitted)

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.special import stdtrit
 
 from plantar.conventions import MONTH, NORMAL95, YEAR, Array
-from plantar.fleet.statistics.control_chart import Limits, limits_of, watch
-from plantar.fleet.statistics.trend import FEWEST, Trend, trend_of
+from plantar.fleet.statistics.control_chart import BASELINE, Limits, limits_of, watch
+from plantar.fleet.statistics.trend import Trend, trend_of
 
 Kind = Literal["step", "trend", "outlier"]
 
@@ -66,7 +66,7 @@ def history_of(time: Array, values: Array, weights: Array, rate: float) -> Histo
         >>> [(change.kind, change.first) for change in history_of(np.arange(60.0), softer, np.ones(60), 0.1).changes]
         [('step', 40)]
     """
-    if len(time) < FEWEST or time[-1] <= time[0]:
+    if len(time) < BASELINE or time[-1] <= time[0]:
         return History((), 0, None)
     a_year = YEAR * (len(time) - 1) / float(time[-1] - time[0])
     share = min(rate / KINDS / a_year, LARGEST_SHARE)
@@ -179,7 +179,7 @@ def _trends(
         start = max((first for first, seen in steps if seen < end), default=0)
         own = np.setdiff1d(np.flatnonzero((time > tick - WINDOW) & (time <= tick)), alone)
         own = own[own >= start]
-        if len(own) <= FEWEST or time[own[-1]] - time[own[0]] < 0.9 * SHORTEST:
+        if len(own) <= BASELINE or time[own[-1]] - time[own[0]] < 0.9 * SHORTEST:
             continue
         line = trend_of(time[own], values[own], weights[own])
         if line is not None and line.probability < probability:

@@ -16,12 +16,11 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import t as student
 
-from plantar.conventions import Array
+from plantar.conventions import ROUNDING, Array
 
 Labels = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 LEVEL: Final = 0.95  # of intervals
-LEAST: Final = 1e-12  # of the mean square, so that values without any deviation of their own can be weighed
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ def nested_means(
         >>> round(found.fleet.value, 2), found.fleet.members, round(found.units["a"].value, 2)
         (1.6, 2, 1.1)
     """
-    squares = np.maximum(stds**2, LEAST * float(np.mean(values**2)))
+    squares = np.maximum(stds**2, ROUNDING * float(np.mean(values**2)))
     names = list(dict.fromkeys(units))
     day_of, of_days = _labelled(list(zip(units, days, strict=True)))
     recordings = _between(values, squares, day_of)

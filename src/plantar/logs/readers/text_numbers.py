@@ -9,10 +9,9 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import LogError
-from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.read_limit import BLOCK, ReadLimit
 from plantar.notes import Note
 
-BLOCK = 8 * 2**20  # bytes parsed at a time
 BAD_LINES = 0.01  # share of lines of another length before the file is refused
 HEAD = 2**16  # bytes in which decimal commas show
 DECIMAL_COMMA = re.compile(rb"[-+]?\d+,\d+([eE][-+]?\d+)?")

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from plantar.conventions import UNIFORM, Array, Mask
+from plantar.conventions import SHOWN, UNIFORM, Array, Mask
 from plantar.cores import Each
 from plantar.estimation.delays.delay import LONGEST, estimate_delay
 from plantar.estimation.delays.sensor_delays import Balance, estimate_delays
@@ -31,7 +31,6 @@ ROUNDS = 6
 WAVERING = 3
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
-SUSPECT = 3.0  # likewise, for steps from elsewhere to be tried, where the difference is not well known
 LEAST_DISTINCT = 0.0015  # s, and by so much
 WELL_KNOWN = 0.003  # s: differences less well known than this are looked for elsewhere as well
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
@@ -147,7 +146,7 @@ def _step(
         spread = np.sqrt(variance + LEAST_STD**2)
         size = np.abs(apart)
         seem = size > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
-        suspect = bool((size > SUSPECT * spread)[spread >= WELL_KNOWN].any())
+        suspect = bool((size > SHOWN * spread)[spread >= WELL_KNOWN].any())
         differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
         # What is known no better than by what is usual moves nothing.
         told = np.asarray(told & (spread < APART))
