@@ -33,8 +33,8 @@ DRAWN_ANEW = (
     Mutant(
         "faults/joints/closed_chain.py",
         "more left by the joint's angle",
-        "CLOSED = 0.5  # share of the soles'",
-        "CLOSED = 0.7  # share of the soles'",
+        "if missed > BETTER or",
+        "if missed > 1.4 * BETTER or",
     ),
     Mutant(
         "faults/stance.py",
@@ -181,7 +181,9 @@ DRAWN_ANEW = (
         "depth - LOWEST * abs(depth)",
     ),
     Mutant("robot_guess/imu.py", "a turn believed sooner", "CLEARLY = 0.5", "CLEARLY = 0.7"),
-    Mutant("robot_guess/stance.py", "a third of the weight", "CARRIES = 0.5", "CARRIES = 0.33"),
+    Mutant(
+        "robot_guess/stance.py", "a third of the weight", "force > CARRIED * weight", "force > 0.33 * weight"
+    ),
     Mutant(
         "sensors/accelerometer_delay.py",
         "the other's share",

@@ -12,12 +12,12 @@ from plantar.faults.standing import UNEXPLAINED
 from plantar.robot_guess.feet import SHAPE_SPREAD, Sole, box
 from plantar.robot_guess.seat import Seat, pressure, sensor_pose
 from plantar.robot_guess.stance import FEWEST, Stance
+from plantar.sensors.moments.torque_gains import WORTH_SAYING
 
 LOADED = 0.3  # of the weight on a foot whose centre of pressure is looked at
 RARE = 1.0  # % of the samples at either end that are left aside
 EDGE = 0.01  # m: no robot stands on the very edge of its soles
 OUTSIDE = 0.05  # share of the samples that may lie an EDGE or more outside an outline
-WORTH_A_WORD = 0.03  # of the weight
 MOSTLY = 0.5  # share beyond which even a guessed outline contradicts the centre of pressure
 OFF_WEIGHT = 0.1  # share by which the feet may carry more or less than the URDF weighs: twice `link_mass`
 UNEVEN = 0.02  # m between the planes of two soles
@@ -81,7 +81,7 @@ def check_stance(
         total += np.sum(force * stance.up, axis=1)
     carried = float(np.median(total))
     text = f"the feet carry {carried / GRAVITY:.1f} kg, the URDF weighs {weight / GRAVITY:.1f} kg"
-    if abs(carried - weight) > WORTH_A_WORD * weight:
+    if abs(carried - weight) > WORTH_SAYING * weight:
         text += ": other masses, a gain, or somebody who holds the robot or leans on it"
     found = [Remark(text, abs(carried - weight) > OFF_WEIGHT * weight)]
     unbalanced = left > UNEXPLAINED

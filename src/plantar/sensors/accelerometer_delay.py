@@ -40,8 +40,10 @@ LARGEST = 0.01  # s: the filter of an accelerometer of its own; later is a fault
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
-COLUMNS = 11  # the lean, and what goes with it
-ACCELEROMETER, ORIENTATION = 1, 2  # columns: what a late one of them makes of the lean
+COLUMNS = 11
+"""The lean, and what goes with it."""
+ACCELEROMETER, ORIENTATION = 1, 2
+"""Columns: what a late one of them makes of the lean."""
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,12 @@ from plantar.contact.phases import FootContact
 from plantar.conventions import Array, rotation_from_quaternion
 from plantar.estimation.orthonormal import without
 from plantar.estimation.slow_drift import drift_basis
+from plantar.faults.gyroscope import SURE
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
 from plantar.sensors.accelerometer_delay import EDGE
-from plantar.sensors.tilt_error import KEPT_PER_PERIOD, SURE, TOLD, enough_of, lean_of, stance_leans
+from plantar.sensors.tilt_error import KEPT_PER_PERIOD, TOLD, enough_of, lean_of, stance_leans
 from plantar.signals.filters import low_pass
 from plantar.signals.orientation import unit_quaternions
 

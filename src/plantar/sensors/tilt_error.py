@@ -21,6 +21,7 @@ import numpy as np
 from plantar.contact.deflection import BushState, FootMotion
 from plantar.contact.phases import FootContact
 from plantar.conventions import GRAVITY, Array, cross, rotation_from_quaternion
+from plantar.faults.gyroscope import SURE
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
@@ -31,9 +32,8 @@ from plantar.signals.segments import runs
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
 LEAST_RATE = 0.01  # 1/s: below it the damping is not affected
 EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that shows it
-# Or so many deviations: beside a noisy gyroscope it explains little, and moves the damping as much.
-SURE = 6.0
-AXES = 2  # of the horizontal plane, in which the vertical leans
+AXES = 2
+"""Of the horizontal plane, in which the vertical leans."""
 CORRECTED = 3.0  # Hz, up to which the attitude is put right: as far as robots sway
 TOLD = 1.5  # Hz, up to which leans tell of sensors that are late or turned
 DERIVED = 5.0  # Hz: filter of what is differentiated twice

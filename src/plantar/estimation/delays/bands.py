@@ -21,7 +21,8 @@ MOST_ENDS = 0.5  # of a recording that ends may take
 # Of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %.
 LEAST_SHARE = 1e-4
 LONG = 10_000  # samples beyond which threads filter axes beside each other
-HALVES = (0, 2)  # the places of the parts that are halves
+HALVES = (0, 2)
+"""The places of the parts that are halves."""
 
 
 @dataclass(frozen=True)

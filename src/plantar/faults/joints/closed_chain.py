@@ -24,6 +24,7 @@ from plantar.errors import clock
 from plantar.faults.bush_frames import SAMPLES
 from plantar.faults.channels import STEPS
 from plantar.faults.joints.names import legs
+from plantar.faults.stance_changes import BETTER
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
@@ -41,9 +42,7 @@ LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, 
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
 # Share of the soles' motion that is left with the legs exchanged: what sways is seldom symmetric.
 EXCHANGED = 0.4
-CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave
 SURELY_CLOSED = 0.3  # likewise, where the torque does not tell
-FOLLOWED = 0.5  # share of the torque's misfit that it may leave
 FOLLOWS = 0.3  # share of the torque's variance that may then not follow the bush's angle
 
 
@@ -207,12 +206,12 @@ def _own_angle(stand: _Stand, name: str, foot: str, finest: Mapping[str, float])
     left = apart + moves * angle[:, None]
     total = float(np.sum(apart**2))
     missed = float(np.sqrt(np.sum(left**2) / total)) if total > 0 else np.inf
-    if missed > CLOSED or np.ptp(angle) < ROUNDING * _of_rounding(stand, moves, finest):
+    if missed > BETTER or np.ptp(angle) < ROUNDING * _of_rounding(stand, moves, finest):
         return 0.0, False
     closed = stand.turned(joint, angle)[foot]
     axis = int(np.argmax(np.std(closed.deflection - as_read[foot].deflection, axis=0)))
     before, after = (_unexplained(state, axis) for state in (as_read[foot], closed))
-    follows = after < min(FOLLOWS, FOLLOWED * before)
+    follows = after < min(FOLLOWS, BETTER * before)
     return (float(np.ptp(angle)) if follows or missed < SURELY_CLOSED else 0.0), follows
 
 

@@ -29,8 +29,7 @@ from plantar.signals.filters import low_pass
 from plantar.signals.segments import runs, steps_in
 
 LEAST_LEAN = 0.003  # rad: less hardly disturbs a deflection
-SURE = 6.0  # times the usual change of the excess over NOISE_TIME: a lean beyond doubt
-NOISE_TIME = 0.1  # s
+SURE = 6.0  # times the usual change of the excess over NEAR: a lean beyond doubt
 BESIDE = 0.3  # of the fit's filter's period, left out beside a lean
 PRESSURE_NOISE = 4.0  # usual deviations of the centre of pressure where it stops
 LEAST_BAND = 0.0007  # m inside of where it stops: still there
@@ -133,7 +132,7 @@ def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, 
     when it is not there.
     """
     rest = flat & np.isfinite(excess).all(axis=1) & ~widened(visits, round(SMEAR / period))
-    least = max(LEAST_LEAN, SURE * _usual_change(excess, rest, steps_in(NOISE_TIME, period)))
+    least = max(LEAST_LEAN, SURE * _usual_change(excess, rest, steps_in(NEAR, period)))
     sure = _lean(excess, visits, rest, period) > least
     if sure.sum() * period < FEWEST:
         return sure
