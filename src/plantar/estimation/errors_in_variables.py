@@ -25,7 +25,7 @@ from plantar.signals.segments import complete
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
-FEWEST = 50  # samples
+FEWEST = 50  # samples of one recording, for it to take part in a fit or a score: fewer are no motion
 SECOND = 1.0  # s, within which an attitude that wanders is nearly a parabola in time
 PAST_ZERO = 1.5  # of a value: errors draw it to zero, and chance not far past it
 DRAWN = 0.2  # of a value: one from which errors may have taken more is not known

@@ -20,7 +20,7 @@ ANNEALED = 2.0  # by which the weights' reach shrinks in a step
 STIFF = 1e8  # by which the first weights are lower than the last
 SETTLED = 5  # steps with the final reach
 FIRST_DRIFT, FIRST_SLOPE = 1.0, 0.3  # m/s, m/s²: deviations of what is known of both before the first sample
-LEAST_JUMP = 1e-10  # m²/s²
+LEAST_JUMP = 1e-10  # m²/s²: a variance above zero, by which the chain of samples can be solved
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ DERIVED = 5.0  # Hz: filter of what is differentiated twice
 # Samples of DERIVED's period: differences of such leave the band below TOLD as it is.
 KEPT_PER_PERIOD = 8.0
 SHORTEST_STANCE = 5.0  # s on the same feet
-PADDING = 2.0  # s
+PADDING = 2.0  # s that are mirrored at both ends of a stance: as long as a lean answers to
 
 
 @dataclass(frozen=True)

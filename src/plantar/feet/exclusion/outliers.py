@@ -15,7 +15,7 @@ from plantar.feet.regression.prediction import predict
 from plantar.signals.medians import running_median
 from plantar.signals.segments import runs
 
-BIN = 0.1  # s
+BIN = 0.1  # s of samples that are judged together: shorter than any motion
 AROUND = 6.0  # s whose usual misfit a bin is compared with
 FAR_MISFITS = 6.0  # usual misfits
 WORTH = 0.03  # of the recording's spread of torque: a smaller misfit, or a jump of the zero, does no harm

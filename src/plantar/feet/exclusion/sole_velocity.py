@@ -27,8 +27,8 @@ DRIFT_RATE = 50.0  # Hz, enough for the drift
 GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
 LAG = 0.05  # s, in which neither drift nor slide changes much
 SLOPE_TIME = 1.0  # s, in which the drift's slope changes by more than noise
-LEAST_NOISE = 0.0002  # m/s
-LEAST_WANDER = 0.0005  # m/s² in a second's root
+LEAST_NOISE = 0.0002  # m/s: no IMU tells a sole's speed better
+LEAST_WANDER = 0.0005  # m/s² in a second's root: no zero of an accelerometer wanders less
 NEAR = 0.1  # s around a sample whose acceleration counts
 MEDIAN = np.sqrt(2 * np.log(2))  # median length of a plane vector, in deviations of its components
 

@@ -22,7 +22,6 @@ SHORTEST: Final = MONTH  # days: in less, a trend and a step are one
 BESIDE: Final = 60.0  # days before and behind a step that its size is taken from
 AGAIN: Final = 2.1 * MONTH  # days within which another trend of the same direction is the same one
 BENDS: Final = 25  # places where a line may begin
-TINY: Final = 1e-300  # for zero in a denominator
 LARGEST_SHARE: Final = 0.2  # of days that may be called one thing, where days are few and alarms many
 
 
@@ -141,7 +140,7 @@ def _bend(time: Array, values: Array, weights: Array) -> tuple[int, float]:
         ramp = np.maximum(time - time[bend], 0.0)
         ramp -= weights @ ramp / weights.sum()
         level = values - weights @ values / weights.sum()
-        slope = float(weights @ (ramp * level)) / max(float(weights @ ramp**2), TINY)
+        slope = float(weights @ (ramp * level)) / max(float(weights @ ramp**2), np.finfo(float).tiny)
         missed = float(weights @ (level - slope * ramp) ** 2)
         if missed < best[1]:
             best = (int(bend), missed)

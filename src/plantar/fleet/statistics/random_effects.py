@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -19,8 +19,6 @@ from scipy.stats import t as student
 from plantar.conventions import ROUNDING, Array
 
 Labels = np.ndarray[tuple[int], np.dtype[np.intp]]
-
-LEVEL: Final = 0.95  # of intervals
 
 
 @dataclass(frozen=True)
@@ -103,7 +101,7 @@ def mean_of(values: Array, variances: Array, between: float) -> Mean:
         weights = 1 / (variances + between)
         variance = float(weights @ (values - value) ** 2 / weights.sum() / freedom)
     std = float(np.sqrt(variance))
-    wide = std * float(student.ppf((1 + LEVEL) / 2, freedom if freedom > 0 else np.inf))
+    wide = std * float(student.ppf(0.975, freedom if freedom > 0 else np.inf))
     return Mean(value, std, freedom if freedom > 0 else np.inf, value - wide, value + wide, len(values))
 
 

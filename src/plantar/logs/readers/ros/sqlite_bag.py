@@ -13,7 +13,7 @@ from plantar.logs.readers.ros.scan import MESSAGES, READ
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
-MESSAGE_LIMIT = 64 * 2**20  # bytes
+MESSAGE_LIMIT = 64 * 2**20  # bytes of one message: those of sensors have some hundred
 
 
 def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
