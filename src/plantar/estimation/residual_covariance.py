@@ -8,6 +8,8 @@ J. Business & Economic Statistics 36, 2018), whose few degrees of freedom go int
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from plantar.conventions import Array
@@ -15,6 +17,9 @@ from plantar.estimation.quantiles import MOST_FREEDOM, student_quantile
 
 SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/how_often_intervals_hold.md)
 FEWEST_COSINES = 4  # degrees of freedom of a deviation, however short the recording
+# Numbers of a recording's cosines up to which they are kept: products with so few take less than a transform.
+FEW = 2**15
+KEPT = 64  # recordings of other lengths, in bands and feet, whose cosines are: 16 MB at most
 
 
 def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
@@ -36,6 +41,8 @@ def score_cosines(scores: Array, duration: float) -> Array:
     count = len(scores)
     cosines = min(cosine_count(duration), max(count - 1, 1))
     # Orthonormal DCT-II, √(2/n) Σ s_t cos(π j (2t + 1) / 2n): every coefficient's variance is the density.
+    if count * cosines <= FEW:
+        return np.asarray(_cosines(count, min(cosines, count - 1)) @ scores)
     # As a Fourier transform it is one of the even samples and, turned round, the odd ones.
     order = np.arange(1, min(cosines, count - 1) + 1)
     turned = np.fft.rfft(np.concatenate([scores[::2], scores[1::2][::-1]]), axis=0)[
@@ -45,6 +52,14 @@ def score_cosines(scores: Array, duration: float) -> Array:
     phases = np.exp(-0.5j * np.pi * order / count)[:, None]
     coefficients = np.sqrt(2 / count) * (phases * turned).real
     return np.asarray(np.sqrt(count / max(len(coefficients), 1)) * coefficients)
+
+
+@lru_cache(maxsize=KEPT)
+def _cosines(count: int, number: int) -> Array:
+    """The rows (number, count) whose products with scores are their cosines, each for one degree of freedom."""
+    order = np.arange(1, number + 1)[:, None]
+    rows = np.cos(0.5 * np.pi / count * order * (2 * np.arange(count) + 1))
+    return np.asarray(np.sqrt(2 / max(number, 1)) * rows)
 
 
 def pooled_freedom(variances: Array, freedoms: Array) -> Array:
