@@ -1,4 +1,5 @@
 // A model's text: every value has its place, and nothing is passed over.
+#include <array>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -15,10 +16,10 @@ const std::string TURN = " 1 2 3 4 5 6 7 8 9 ";
 const std::string ROBOT =
     "plantar.foot_estimator/1\nrobot biped\nweight 500\ncutoff 4\nwrench_delay 0.003 0.001\nwrench_gain_std 0.02\n"
     "joint knee\njoint hip\n";
-const std::string FOOT = "foot left\ncontact always\npath 1 1 -1" + TURN + "0.1 0.2 0.3\nbush" + TURN +
+const std::string FOOT = "foot left\ncontact always\npath 1 1 -1" + TURN + "0.1 0.2 0.3\nbends 2e-4\nbush" + TURN +
                          "0.4 0.5 0.6\nsole" + TURN + "0.7 0.8 0.9\nsensor -1" + TURN +
                          "1.1 1.2 1.3\ncorner 0.1 0.05\nplace_std 0.003 0.004\nmisplaced 1 0.01 0.02 0.03 0.04\n"
-                         "compliance 1e-5 2e-6\nlinear 1\nelement 0 0.01 4 0.5\n";
+                         "unsure 1 0.03 0.04\ncompliance 1e-5 2e-6\nlinear 1\nelement 0 0.01 4 0.5\n";
 
 EstimatorModel read(const std::string& text) {
   std::istringstream stream(text);
@@ -42,6 +43,8 @@ void every_value_has_its_place() {
   const Misplaced& roll = foot.misplaced[1];
   check::that(roll.aside == 0.01 && roll.above == 0.02 && roll.turned == 0.03 && roll.leans == 0.04, "what it is off by");
   check::that(foot.misplaced[0].aside == 0.0, "in roll alone");
+  check::that(joint.compliance == 2e-4 && foot.unsure[1] == std::array{0.03, 0.04}, "a joint that bends");
+  check::that(foot.unsure[0] == std::array{0.0, 0.0}, "in roll alone");
   check::that(foot.compliance == 1e-5 && foot.compliance_std == 2e-6, "a slide");
   check::that(!foot.linear[0] && foot.linear[1], "no memory in roll");
   check::that(foot.slip_angle[0] == 0.01 && foot.slip_torque[0] == 4.0 && foot.slip_torque_std[0] == 0.5, "an element");
@@ -61,6 +64,7 @@ void what_is_not_known_is_refused() {
   check::that(refused(ROBOT + "speed\n" + FOOT) && refused(ROBOT + FOOT + "speed\n"), "a word that nobody knows");
   check::that(refused(ROBOT + "weight 500 N\n" + FOOT), "a value too many");
   check::that(refused(ROBOT + "weight\n" + FOOT) && refused(ROBOT + "weight much\n" + FOOT), "none");
+  check::that(refused(ROBOT + "foot left\nbends 1e-4\n" + FOOT), "a joint that bends before there is one");
   check::that(refused(ROBOT + FOOT + "linear 2\n") && refused(ROBOT), "no axis; no foot");
   check::that(refused("plantar.foot_estimator/2\nweight 500\n" + FOOT), "another version");
 }

@@ -28,6 +28,8 @@ def model_of(folder: Path, **changes: object) -> str:
         compliance={},
         linear=(),
         misplaced={},
+        bends={},
+        unsure={},
     )
 
 

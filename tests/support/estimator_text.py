@@ -9,5 +9,13 @@ from plantar.robot.model import RobotModel
 def untold(robot: RobotModel) -> str:
     """No delay, no compliance, no memory: all is learnt."""
     return estimator_model(
-        robot, cutoff=5.0, wrench_delay=(0.0, 0.0), elements={}, compliance={}, linear=(), misplaced={}
+        robot,
+        cutoff=5.0,
+        wrench_delay=(0.0, 0.0),
+        elements={},
+        compliance={},
+        linear=(),
+        misplaced={},
+        bends={},
+        unsure={},
     )

@@ -18,6 +18,7 @@ struct PathJoint {
   bool slides;  // prismatic, else revolute
   double sign;  // -1 where it is passed from child to parent
   Frame frame;  // before it moves, in the frame behind the joint before
+  double compliance = 0.0;  // by which it bends beyond its encoder [rad/(N·m)]
 };
 
 // Torque about one axis of a bush that is not the bush's: of a centre or a sensor that is not where it was told to be.
@@ -40,6 +41,7 @@ struct FootModel {
   std::vector<std::array<double, 2>> polygon;          // the sole's corners in its plane, counter-clockwise [m]
   std::array<double, 2> place_std = {0.0, 0.0};        // of the bush's centre, aside and above [m]
   std::array<Misplaced, 2> misplaced = {};             // of pitch and roll, as a batch fit has found it
+  std::array<std::array<double, 2>, 2> unsure = {};    // deviation of K, C by joints that bend [share]
   double compliance = 0.0;                             // of the slide along the ankle's z [m/N]
   double compliance_std = 0.0;                         // deviation of `compliance` [m/N]
   std::array<double, 2> slip_angle = {0.0, 0.0};       // of a Jenkins element beside pitch and roll [rad]; 0: none

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "online/axis_regression.hpp"
@@ -22,6 +23,7 @@ constexpr double MOST_HELD = 0.999;  // of a compliance, by what was expected of
 struct AxisFacts {
   double weight;                             // of the robot [N]
   double gain_std, delay_std, period;        // of the force sensor [1, s], of the ticks [s]
+  std::array<double, 2> unsure;              // deviation of stiffness and damping beside [share]
   double slip_angle;                         // of the model's element [rad]; 0: it has none
   bool without_memory, has_memory, is_late;  // told or shown to have none; rows show one; told to be late
 };
@@ -50,8 +52,9 @@ inline AxisPublished published(const AxisValues& found, const AxisFacts& facts) 
   const double surely = element ? 0.0 : std::max(std::abs(found.late.value) - late_half, 0.0);
   const double late = together(facts.delay_std, SKEW * facts.period, surely);
   AxisPublished out = {};
-  out.stiffness = parameter(STIFFNESS, together(facts.gain_std * k, late * found.by_late[STIFFNESS]));
-  out.damping = parameter(DAMPING, together(facts.gain_std * c, late * found.by_late[DAMPING]));
+  const double of_k = facts.unsure[0] * k, of_c = facts.unsure[1] * c;
+  out.stiffness = parameter(STIFFNESS, together(facts.gain_std * k, late * found.by_late[STIFFNESS], of_k));
+  out.damping = parameter(DAMPING, together(facts.gain_std * c, late * found.by_late[DAMPING], of_c));
   if (element) out.slip_torque = parameter(SLIP_TORQUE, facts.gain_std * slip_torque);
   // A slide that is softer than anyone expects is held back by that expectation, whose deviation says nothing of it.
   const double held = std::clamp(found.held, 0.0, MOST_HELD);

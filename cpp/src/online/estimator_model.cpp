@@ -81,6 +81,9 @@ void read_foot_line(FootModel& foot, Line& line) {
     const bool slides = line.next<int>() != 0;
     const double sign = line.next<double>();
     foot.path.push_back({joint, slides, sign, line.frame()});
+  } else if (line.kind() == "bends") {
+    if (foot.path.empty()) line.fail("no joint is on the path yet");
+    foot.path.back().compliance = line.next<double>();
   } else if (line.kind() == "bush")
     foot.bush = line.frame();
   else if (line.kind() == "sole")
@@ -96,6 +99,9 @@ void read_foot_line(FootModel& foot, Line& line) {
     Misplaced& to = foot.misplaced[line.axis()];
     to.aside = line.next<double>(), to.above = line.next<double>();
     to.turned = line.next<double>(), to.leans = line.next<double>();
+  } else if (line.kind() == "unsure") {
+    std::array<double, 2>& to = foot.unsure[line.axis()];
+    to[0] = line.next<double>(), to[1] = line.next<double>();
   } else if (line.kind() == "compliance")
     foot.compliance = line.next<double>(), foot.compliance_std = line.next<double>();
   else if (line.kind() == "linear") {

@@ -147,7 +147,7 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     if (bad[f] & INPUT_MISSING) continue;
     paths.read(f, motion[f]);
     motion[f].gyroscope = gyroscope;
-    feet[f].read(motion[f], reading.wrench[f]);
+    feet[f].read(motion[f], reading.wrench[f], reading.position);
     total += feet[f].load();
   }
   SlipGate::Verdict slips = SlipGate::Verdict::none;

@@ -7,7 +7,7 @@ void FootTracker::publish(int axis) noexcept {
   const AxisValues& values = axes_[axis].values();
   const bool has_memory = memories_[axis].seen();
   const AxisPublished found = published(
-      values, {weight_, gain_std_, delay_std_, period_, foot_->slip_angle[axis],
+      values, {weight_, gain_std_, delay_std_, period_, foot_->unsure[axis], foot_->slip_angle[axis],
                foot_->linear[axis] || memories_[axis].excluded(), has_memory, told_late_});
   AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
   out.stiffness = found.stiffness, out.damping = found.damping, out.slip_torque = found.slip_torque;

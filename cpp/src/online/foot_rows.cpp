@@ -22,14 +22,16 @@ void FootTracker::restart_filter() noexcept {
 // period; the mean of both its ends, as of all else, is more than that by a twelfth of the rate's second difference. That
 // takes the next tick, too.
 void FootTracker::filter(const FootKinematics& motion, double time, double dt, double period) noexcept {
-  const std::array<double, 5> now = {estimate_.load, wrench_[0], wrench_[1], estimate_.pitch.torque,
-                                     estimate_.roll.torque};
+  const std::array<double, 7> now = {estimate_.load,        wrench_[0], wrench_[1], estimate_.pitch.torque,
+                                     estimate_.roll.torque, bends_[0],  bends_[1]};
   const bool stands = estimate_.contact == ContactState::stance;
   Middle next = {time, dt, stands, stands && (estimate_.flags & EDGE), flat_ && estimate_.contact == ContactState::landing};
   const double ticks = dt > 0.0 ? 1.0 / dt : 0.0;  // in a second
   for (int i = 0; i < 5; ++i) next.forces[i] = 0.5 * (now[i] + before_[i]);
   for (int a = 0; a < 2; ++a) {
     next.forces[5 + a] = (now[3 + a] - before_[3 + a]) * ticks;
+    next.forces[7 + a] = 0.5 * (now[5 + a] + before_[5 + a]);
+    next.forces[9 + a] = (now[5 + a] - before_[5 + a]) * ticks;
     next.angles[a] = motion.mean_angle[a], next.angles[2 + a] = motion.mean_rate[a];
     next.angles[6 + a] = 0.5 * (motion.turning[a] + turning_before_[a]);
     turning_before_[a] = motion.turning[a];
@@ -50,10 +52,13 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   if (middles_ < 3) return;
   time = row.time, dt = row.dt;
   std::array<double, 8>& angles = row.angles;
-  std::array<double, 7>& forces = row.forces;
+  std::array<double, 11>& forces = row.forces;
   for (int a = 0; a < 2; ++a) angles[4 + a] = smooth_[a].pass(angles[a], row.mean_rate[a], dt);
   const bool reaches = angles_.pass(time, angles, delay_, angles) && forces_.pass(time, forces, -delay_, forces);
   if (!reaches) return;
+  // By the torques of that time, which are as late as they were told to be.
+  for (int a = 0; a < 2; ++a)
+    angles[a] += forces[7 + a], angles[2 + a] += forces[9 + a], angles[4 + a] += forces[7 + a];
   follow_elements(row, time, dt);
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);

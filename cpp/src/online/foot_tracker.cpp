@@ -55,6 +55,7 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
 
 FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot)
     : foot_(&foot),
+      joints_(foot),
       weight_(model.weight),
       least_load_(LEAST_LOAD * model.weight),
       outline_(foot.polygon),
@@ -78,14 +79,17 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot)
   estimate_.flags = NOT_STANDING | NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN;
 }
 
-void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept {
+void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>& raw,
+                       std::span<const double> position) noexcept {
   raw_ = raw;
   std::array<double, 6> zeroed;
   for (int i = 0; i < 6; ++i) zeroed[i] = raw[i] - zero_.value()[i];
   wrench_ = moved_wrench(foot_->sensor, foot_->sign, zeroed.data());
   const Bend bend(motion.up);
   estimate_.load = motion.up[0] * wrench_[0] + motion.up[1] * wrench_[1] + motion.up[2] * wrench_[2];
-  estimate_.pitch.deflection = motion.angle[0], estimate_.roll.deflection = motion.angle[1];
+  bends_ = joints_.more(motion.up, wrench_, position);
+  estimate_.pitch.deflection = motion.angle[0] + bends_[0];
+  estimate_.roll.deflection = motion.angle[1] + bends_[1];
   estimate_.pitch.rate = motion.rate[0], estimate_.roll.rate = motion.rate[1];
   // The loaded slide carries the bush's centre up by z. The roll axis turns with the pitch: Ry(pitch) e_x.
   const double z = foot_->compliance * wrench_[2];
@@ -195,7 +199,7 @@ bool FootTracker::leans(const FootKinematics& motion, double inside, double dt) 
       return false;
     }
     const double element = has_element(*foot_, a) ? found.value[SLIP_TORQUE] * element_[a].state() : 0.0;
-    angle[a] = motion.angle[a];
+    angle[a] = motion.angle[a] + bends_[a];
     bent[a] = (torque[a] - found.value[DAMPING] * motion.rate[a] - element) / found.value[STIFFNESS];
   }
   return edge_.step(inside, estimate_.load, angle, bent, dt);

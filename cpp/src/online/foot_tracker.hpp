@@ -8,6 +8,7 @@
 #include "online/air_zero.hpp"
 #include "online/axis_published.hpp"
 #include "online/axis_regression.hpp"
+#include "online/bent_joints.hpp"
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
@@ -32,8 +33,8 @@ class FootTracker {
  public:
   FootTracker(const EstimatorModel& model, const FootModel& foot);
 
-  // The wrench at the bush, the load and the centre of pressure of this tick.
-  void read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept;
+  // The wrench at the bush, the load and the centre of pressure of this tick. position: of all joints.
+  void read(const FootKinematics& motion, const std::array<double, 6>& raw, std::span<const double> position) noexcept;
   // What speaks against all feet's readings: a slide of their soles, sensors that contradict each other.
   struct Doubt {
     SlipGate::Verdict slips;
@@ -81,7 +82,7 @@ class FootTracker {
     double time, dt;
     bool stands, rolls, lands;
     std::array<double, 8> angles = {};
-    std::array<double, 7> forces = {};
+    std::array<double, 11> forces = {};
     double of_ends[2] = {}, difference[2] = {}, mean_rate[2] = {};
   };
 
@@ -98,6 +99,7 @@ class FootTracker {
   void publish(int axis) noexcept;
 
   const FootModel* foot_;
+  BentJoints joints_;
   double weight_, least_load_;
   Outline outline_;
   double middle_depth_, delay_, cutoff_;
@@ -111,13 +113,14 @@ class FootTracker {
   CausalFilter<FilteredRow::CHANNELS> filter_;
   DelayLine<8> angles_;  // of both axes: angles, rates, angles without noise, the gyroscope's part of the rates
   std::array<SmoothAngle, 2> smooth_;
-  DelayLine<7> forces_;  // load, horizontal forces, both torques, their rates
+  DelayLine<11> forces_;  // load, horizontal forces, both torques, their rates, angles and rates of joints that bend
   std::array<AxisRegression, 2> axes_;
   std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
   Parameter learnt_compliance_[2];       // of the slide beside the model's, as each axis has it
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {};
-  std::array<double, 5> before_ = {};     // load, force x, y, both torques, of the last tick
+  std::array<double, 2> bends_ = {};      // of pitch and roll, by joints that bend beyond their encoders [rad]
+  std::array<double, 7> before_ = {};     // load, force x, y, both torques, both `bends_`, of the last tick
   double turning_before_[2] = {};
   Middle last_ = {}, before_last_ = {};
   int middles_ = 0;                       // of ticks that followed each other, up to three

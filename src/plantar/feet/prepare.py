@@ -116,14 +116,7 @@ def prepare_checked(
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
     progress("estimate the sensors' delays")
     looks, unsure = _on_time(robot, [*logs, *validate], settings.wrench_delay is None)
-    if settings.wrench_delay is None:
-        even = [look.log for look in looks]
-        with over_logs(even) as each:
-            delay = estimate_wrench_delay(robot, even, each, [look.residuals for look in looks])
-        # Newton's law tells delays against the accelerometer, and a bush has its angle from the orientation.
-        delay = replace(delay, std=hypot(delay.std, unsure))
-    else:
-        delay = known_delay(settings.wrench_delay)
+    delay = _wrench_delay(robot, looks, settings, unsure)
     for look in (*logs, *validate, *looks):
         look.forget_residuals()
     size = max(look.log.size for look in looks)
@@ -136,8 +129,12 @@ def prepare_checked(
     if bending.found:
         del found
         return_freed(size)
+        looks = _straight(robot, looks, settings.wrench_delay is None, bending.compliances, delay)
+        delay = _wrench_delay(robot, looks, settings, unsure)
+        for look in looks:
+            look.forget_residuals()
         done = replace(delay, residuals=())
-        found = _recordings(robot, looks, len(logs), settings, done, progress, bending.compliances)
+        found = _recordings(robot, looks, len(logs), settings, done, progress)
     else:
         moments = moments_of(robot, balances, steps)
     del balances
@@ -201,7 +198,9 @@ def prepare_unseen(
         return []
     check_names([look.log for look in looks])
     looks, _ = _on_time(robot, looks, False)
-    recordings = _recordings(robot, looks, 0, settings, delay, progress, bends).recordings
+    if bends is not None:
+        looks = _straight(robot, looks, False, bends, delay)
+    recordings = _recordings(robot, looks, 0, settings, delay, progress).recordings
     return [moved_centre(recording, compliance) for recording in recordings]
 
 
@@ -218,6 +217,30 @@ def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> tupl
         return [*looks], unsure
     with over_logs(after) as each:
         return list(each(partial(look_again, robot, timed), looks, after)), unsure
+
+
+def _wrench_delay(
+    robot: RobotModel, looks: Sequence[FirstLook], settings: FeetSettings, unsure: float
+) -> SensorDelay:
+    """The delay that the logs show, or that the user knows; `unsure` [s]: as of `_on_time`."""
+    if settings.wrench_delay is not None:
+        return known_delay(settings.wrench_delay)
+    even = [look.log for look in looks]
+    with over_logs(even) as each:
+        delay = estimate_wrench_delay(robot, even, each, [look.residuals for look in looks])
+    # Newton's law tells delays against the accelerometer, and a bush has its angle from the orientation.
+    return replace(delay, std=hypot(delay.std, unsure))
+
+
+def _straight(
+    robot: RobotModel, looks: Sequence[FirstLook], timed: bool, compliances: Array, delay: SensorDelay
+) -> list[FirstLook]:
+    """The logs with their joints put straight, looked at again: joints that bend also seem late, or filtered."""
+    if not compliances.any():
+        return [*looks]
+    with over_logs([look.log for look in looks]) as each:
+        straight = list(each(lambda look: put_straight(robot, look.log, compliances, delay), looks))
+        return list(each(partial(look_again, robot, timed), looks, straight))
 
 
 class _Ready(NamedTuple):
@@ -237,10 +260,8 @@ def _recordings(
     settings: FeetSettings,
     delay: SensorDelay,
     progress: Progress,
-    bends: Array | None = None,
 ) -> _Ready:
-    """Logs, the first `fitted` of them to fit, made ready; `bends` (joints,): by which joints bend beyond their
-    encoders [rad/(N.m)]."""
+    """Logs, the first `fitted` of them to fit, made ready."""
     others = f" and {len(looks) - 1} more" if len(looks) > 1 else ""
     progress(f"prepare {looks[0].log.name}{others}")
     tilt_error = sum((look.tilt for look in looks), NO_TILT_ERROR)
@@ -252,9 +273,7 @@ def _recordings(
         return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
 
     def ready(look: FirstLook, role: Role) -> tuple[Recording, Recording | None]:
-        log = in_time(robot, look.log, delay)
-        log = log if bends is None else put_straight(robot, log, bends)
-        recording = prepare(robot, log, role, look.tilt, tilt_error, highest)
+        recording = prepare(robot, in_time(robot, look.log, delay), role, look.tilt, tilt_error, highest)
         # The cutoff may still fall where feet step.
         early = settings.cutoff is not None or not has_steps(recording)
         return recording, usable(recording, highest) if early else None

@@ -25,6 +25,7 @@ from plantar.robot.model import RobotModel, load_robot
 from plantar.signals.filters import LOWEST_CUTOFF
 
 LONGEST_DELAY = 0.1  # s: sensors in a control loop that are later have a fault
+OF_JOINTS = "joint compliance"  # among the causes of a result's intervals
 
 
 class FootEstimator:
@@ -75,6 +76,8 @@ class FootEstimator:
             compliance={} if result is None else result.compliance,
             linear=_linear(result),
             misplaced=_misplaced(result),
+            bends={} if result is None else result.joint_compliance,
+            unsure=_unsure(result),
         )
         self._core = _core.FootEstimator(self._model)
         self._rows = np.empty((len(self.robot.feet), len(FIELDS)))
@@ -236,6 +239,29 @@ def _misplaced(result: FeetResult | None) -> dict[tuple[str, Axis], tuple[float,
     """Where a batch fit has found bush and force sensor: aside, above [m], turned, leaning [rad]."""
     models = () if result is None else result.models
     return {(one.foot, one.axis): (*one.moment_arms, one.turned, one.leans) for one in models}
+
+
+def _unsure(result: FeetResult | None) -> dict[tuple[str, Axis], tuple[float, float]]:
+    """By foot and axis, the deviations of stiffness and damping [share] by how far joints bend, as a batch fit has left
+    them."""
+    if result is None or not result.joint_compliance:
+        return {}
+    left = {
+        (row.foot, row.axis, row.name): row.variance_shares.get(OF_JOINTS, 0.0) for row in result.diagnosis
+    }
+
+    def share(foot: str, axis: Axis, name: str) -> float:
+        row = result.parameter(foot, axis, name)
+        return (
+            abs(row.std / row.value) * math.sqrt(left.get((foot, axis, name), 0.0))
+            if row.std and row.value
+            else 0.0
+        )
+
+    return {
+        (one.foot, one.axis): (share(one.foot, one.axis, "stiffness"), share(one.foot, one.axis, "damping"))
+        for one in result.models
+    }
 
 
 def _row(what: str, values: ArrayLike | None, size: int) -> Array | None:

@@ -38,6 +38,8 @@ def estimator_model(
     compliance: Mapping[str, float],
     linear: Collection[tuple[str, Axis]],
     misplaced: Mapping[tuple[str, Axis], Sequence[float]],
+    bends: Mapping[str, float],
+    unsure: Mapping[tuple[str, Axis], Sequence[float]],
 ) -> str:
     """The text of the model file.
 
@@ -45,7 +47,8 @@ def estimator_model(
     its deviation [s]; elements: Jenkins elements by foot and axis;
     compliance: of the slides by foot [m/N]; linear: feet and axes in which a batch fit has found no memory;
     misplaced: by foot and axis, how far a batch fit has found the bush's centre aside and above [m], the sensor turned
-    and leaning [rad].
+    and leaning [rad]; bends: by how much a joint bends beyond its encoder [rad/(N.m)]; unsure: by foot and axis, the
+    deviations of stiffness and damping that this leaves [share].
 
     Raises RobotError where the robot file names no IMU or no feet.
     """
@@ -63,7 +66,7 @@ def estimator_model(
         *(f"joint {name.replace(' ', '_')}" for name in robot.joint_names),
     ]
     for name in robot.feet:
-        lines += _foot_lines(robot, name)
+        lines += _foot_lines(robot, name, bends)
         for place, axis in enumerate(ROTATIONAL_AXES):
             if (found := elements.get((name, axis))) is not None:
                 lines.append(
@@ -73,18 +76,20 @@ def estimator_model(
                 lines.append(f"linear {place}")
             if any(placed := misplaced.get((name, axis), ())):
                 lines.append(f"misplaced {place} " + _numbers(placed))
+            if any(shares := unsure.get((name, axis), ())):
+                lines.append(f"unsure {place} " + _numbers(shares))
         lines += _place_lines(robot, name, compliance.get(name, 0.0))
     return "\n".join(lines) + "\n"
 
 
-def _foot_lines(robot: RobotModel, name: str) -> Iterator[str]:
+def _foot_lines(robot: RobotModel, name: str, bends: Mapping[str, float]) -> Iterator[str]:
     foot = robot.feet[name]
     path, _, to_bush = path_to(robot, name)
     sensor = to_bush * robot.frame(foot.wrench.placement)[1]
     place = np.concatenate([np.asarray(sensor.rotation).ravel(), sensor.translation])
     yield f"foot {name.replace(' ', '_')}"
     yield f"contact {foot.contact}"
-    yield from _path_lines(path)
+    yield from _path_lines(path, [bends.get(joint, 0.0) for joint in robot.joint_names])
     yield _line("bush", path.bush)
     yield _line("sole", path.sole)
     yield _line("sensor", [foot.wrench.sign, *place])
@@ -103,9 +108,12 @@ def _place_lines(robot: RobotModel, name: str, compliance: float) -> Iterator[st
     yield _line("place_std", [aside, spread])
 
 
-def _path_lines(path: FootPath) -> Iterator[str]:
+def _path_lines(path: FootPath, bends: Sequence[float]) -> Iterator[str]:
+    """A joint on the way from an IMU in another leg carries what that leg does: how it bends is left out."""
     for joint, slides, sign, frame in zip(path.joints, path.slides, path.signs, path.frames, strict=True):
         yield f"path {joint} {int(slides)} " + _numbers([sign, *frame])
+        if bends[joint] and sign > 0:
+            yield _line("bends", [bends[joint]])
 
 
 def _line(word: str, values: Iterable[float] | Array) -> str:

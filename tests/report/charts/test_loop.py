@@ -97,6 +97,18 @@ def test_k_that_may_not_be_used_has_no_line_and_a_richer_model_the_nearest_one()
     assert chart.legend[-1] == ("linear K", "straight")
 
 
+def test_the_line_of_k_lies_in_loops_that_a_load_beside_the_centre_shifts() -> None:
+    torques = ("pitch.torque", "pitch.predicted")
+    tracks = [
+        replace(track, values=track.values | {name: track.values[name] + 7.0 for name in torques})
+        for track in walk_tracks()
+    ]
+    chart = loop_charts(walk_result(), tracks)["left", "pitch"]
+    loop, straight = (points(chart, kind) for kind in ("measured many", "straight"))
+    level = np.interp(loop[:, 0], *straight.T)
+    assert abs(np.mean(level - loop[:, 1])) < 1.0
+
+
 def test_a_long_campaign_stays_within_its_points() -> None:
     (track,) = walk_tracks(motions=["walk_1"])
     time = np.arange(0, 600, 0.005)

@@ -49,10 +49,9 @@ def _chart(result: FeetResult, tracks: Sequence[Track], axis: Axis) -> Chart | N
     slope, name = _straight(result, foot, axis)
     if slope is not None:
         known, reach = np.isfinite(angle), np.array([x.low, x.high])
-        # K passes through zero, what is nearest to a richer model through the middle of its motions.
-        nearest = name == NEAREST
-        through = (float(angle[known].mean()), float(measured[known].mean())) if nearest else (0.0, 0.0)
-        marks.append(line(x(reach), y(through[1] + 1e-3 * slope * (reach - through[0])), "straight"))
+        # Through the middle: a load that pushes beside the bush's centre shifts the torque, whatever the offset.
+        middle, level = float(angle[known].mean()), float(measured[known].mean())
+        marks.append(line(x(reach), y(level + 1e-3 * slope * (reach - middle)), "straight"))
         legend.append((name, "straight"))
     steps = any((row.foot, row.axis) == (foot, axis) for row in result.stances)
     paths, texts = frame(PLACE, x, y, f"{axis} angle [mrad]", "torque [N·m]")

@@ -68,11 +68,19 @@ class SensorDelay:
     doubtful: bool = False
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
+    def by_foot(self, robot: RobotModel) -> Array:
+        """The delay of each foot's wrench [s]."""
+        return np.array([self.feet.get(name, self.delay) for name in robot.feet])
+
 
 def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> MotionLog:
     """The log with wrenches and joint positions as they were at the moments of the IMU's samples."""
-    feet = [sensor_delay.feet.get(name, sensor_delay.delay) for name in robot.feet]
-    return read_in_time(robot, log, np.array([*feet, sensor_delay.encoders]))
+    return read_in_time(robot, log, np.array([*sensor_delay.by_foot(robot), sensor_delay.encoders]))
+
+
+def beside_encoders(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> MotionLog:
+    """The log with wrenches as they were at the moments of the joint positions' samples."""
+    return read_in_time(robot, log, np.array([*sensor_delay.by_foot(robot) - sensor_delay.encoders, 0.0]))
 
 
 def on_force_cells(robot: RobotModel, logs: Iterable[MotionLog]) -> bool:

@@ -15,6 +15,7 @@ from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors.delays.sensor_delay import SensorDelay, beside_encoders
 from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
 from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
 from plantar.sensors.moments.sensor_errors import compliance_columns
@@ -114,13 +115,13 @@ def joint_bending_notes(robot: RobotModel, bending: JointBending) -> list[Note]:
     return [Note(BENT, "info", text)]
 
 
-def put_straight(robot: RobotModel, log: MotionLog, compliances: Array) -> MotionLog:
-    """The log with joints where their links are, which bend by `compliances` (joints,) beyond their encoders; its
-    sensors were read together."""
-    if not compliances.any():
-        return log
-    positions = log.positions(robot)
-    wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
+def put_straight(robot: RobotModel, log: MotionLog, compliances: Array, delay: SensorDelay) -> MotionLog:
+    """The log with joints where their links are, which bend by `compliances` (joints,) beyond their encoders; with
+    `delay` its sensors were read."""
+    positions, at_once = log.positions(robot), beside_encoders(robot, log, delay)
+    wrenches = np.hstack([
+        foot.wrench.sign * at_once.wrench(foot.wrench.name) for foot in robot.feet.values()
+    ])  # fmt: skip
     bent = positions + compliances * np.nan_to_num(leg_torques(robot, positions, wrenches))
     columns = {
         f"joint.{robot.joint_names[place]}.position": bent[:, place] for place in np.flatnonzero(compliances)

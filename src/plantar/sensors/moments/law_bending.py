@@ -15,8 +15,22 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.moments.leg_torques import leg_torques
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.newton_sides import carried
+from plantar.signals.filters import differentiate
 
 STEP = 1e-7  # rad/(N.m), for the slope: far below what any joint bends, far above rounding
+
+
+def bending_torques(robot: RobotModel, residual: NewtonEulerResidual, quick: bool) -> Array:
+    """The torques [N.m] by which what the feet carry turns the joints, with both derivatives, (3, n, joints): at the
+    samples of the residual. quick: whether what bends is accelerated as well.
+
+    Of a standing robot it hardly is, and the torques' noise, white as it is, stays white without.
+    """
+    torques = leg_torques(robot, residual.signals.positions[residual.kept], residual.readings)
+    if not quick:
+        return np.stack([torques, *np.zeros((2, *torques.shape))])
+    rates = differentiate(torques, residual.pair.period)
+    return np.stack([torques, rates, differentiate(rates, residual.pair.period)])
 
 
 def by_bending(
@@ -24,23 +38,16 @@ def by_bending(
     residual: NewtonEulerResidual,
     motion: Motion,
     legs: Sequence[Sequence[int]],
-    quick: bool,
+    torques: Array,
 ) -> list[Array]:
     """How what is predicted beyond the measured changes as each group of joints of `legs` bends, (n, 6) [N, N.m per
-    rad/(N.m)]. motion: of the samples of the residual; quick: whether what bends is accelerated as well.
-
-    Of a standing robot it hardly is, and the torques' noise, white as it is, stays white without.
-    """
+    rad/(N.m)]. motion: of the samples of the residual; torques: of its joints with both derivatives, (3, n, joints)."""
     equation = equation_of(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
-    torques = leg_torques(robot, motion.positions, residual.readings)
 
     def missing(bends: Array) -> Array:
-        bent = replace(motion, positions=motion.positions + bends)
-        if quick:
-            rates = np.gradient(bends, residual.pair.period, axis=0)
-            accelerations = motion.accelerations + np.gradient(rates, residual.pair.period, axis=0)
-            bent = replace(bent, velocities=motion.velocities + rates, accelerations=accelerations)
+        turned = np.stack([motion.positions, motion.velocities, motion.accelerations]) + bends
+        bent = replace(motion, positions=turned[0], velocities=turned[1], accelerations=turned[2])
         transfers = [equation.base_transfer(bent.positions, contact) for contact in contacts]
         predicted = equation.base_wrenches(bent, residual.parameters[None])[0]
         return np.asarray(predicted - np.sum(carried(transfers, residual.readings), axis=0))
@@ -48,6 +55,6 @@ def by_bending(
     slopes = []
     for joints in legs:
         bends = np.zeros_like(torques)
-        bends[:, joints] = STEP * torques[:, joints]
+        bends[..., joints] = STEP * torques[..., joints]
         slopes.append((missing(bends) - missing(-bends)) / (2 * STEP))
     return slopes

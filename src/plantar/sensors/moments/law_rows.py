@@ -16,7 +16,7 @@ from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import RobotModel
 from plantar.sensors.model_errors import imu_turn_slopes, link_errors
-from plantar.sensors.moments.law_bending import by_bending
+from plantar.sensors.moments.law_bending import bending_torques, by_bending
 from plantar.sensors.moments.leg_torques import leg_joints
 from plantar.sensors.moments.sensor_errors import bush_directions, sensor_errors
 from plantar.sensors.newton_euler import NewtonEulerResidual
@@ -45,7 +45,12 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     Of a standing robot what is slower than BAND; of a walk, which moves faster, than QUICKER, so strongly that noise is
     small beside it there. Above it coarse encoders' accelerations had passed for torques that read too much.
     """
-    residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
+    stride = max(1, round(1 / (RATE * residual.pair.period)))
+    torques = None
+    if residual.accelerated:  # moments alone show no bending legs beside torques that read too much
+        # Before samples are left out: derivatives of few would be too small, and joints seem to bend more.
+        torques = bending_torques(robot, residual, quick=steps)[:, ::stride]
+    residual = residual.thinned(stride)
     equation, period = equation_of(robot.floating_model), residual.pair.period
     motion = inertial_motion(
         robot, equation, residual.signals, residual.kept, encoders_late=residual.encoders_late
@@ -62,8 +67,8 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     by_torques = np.sum([one.by_torques for one in read], axis=0)
     legs = leg_joints(robot)
     by_bends = np.zeros((len(legs), len(motion.positions), 6))
-    if centre is None:  # moments alone show no bending legs beside torques that read too much
-        by_bends -= by_bending(robot, residual, motion, legs, quick=steps)
+    if torques is not None:
+        by_bends -= by_bending(robot, residual, motion, legs, torques)
     by_motion = [*-by_mount, *by_bends, *residual.rates, residual.by_encoders, -by_gyroscope]
     # Some at a time and in single precision: all together would be the largest array of any log.
     errors = link_errors(robot)
