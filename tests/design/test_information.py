@@ -43,7 +43,8 @@ def test_an_element_slips_as_its_definition_says() -> None:
 
 def test_information_is_that_of_least_squares() -> None:
     reach, coefficients = design_samples.reach(), design_samples.coefficients()
-    found = information(reach, coefficients)
+    firm = [reach.of(part, coefficients) for part in (reach.firm_deflection, reach.firm_rate)]
+    found = information(reach, *firm)
     bent = reach.of(reach.firm_deflection, coefficients)[1, 0, 1]  # told stiffness, first foot, roll
     rate = reach.of(reach.firm_rate, coefficients)[1, 0, 1]
     element = remembered(bent[None], [SLIP_ANGLE, NEARBY * SLIP_ANGLE])[0]

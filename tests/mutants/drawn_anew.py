@@ -33,8 +33,8 @@ DRAWN_ANEW = (
     Mutant(
         "faults/joints/closed_chain.py",
         "more left by the joint's angle",
-        "CLOSED = 0.5  # share of the soles'",
-        "CLOSED = 0.7  # share of the soles'",
+        "if missed > BETTER or",
+        "if missed > 1.4 * BETTER or",
     ),
     Mutant(
         "faults/stance.py",
@@ -181,7 +181,9 @@ DRAWN_ANEW = (
         "depth - LOWEST * abs(depth)",
     ),
     Mutant("robot_guess/imu.py", "a turn believed sooner", "CLEARLY = 0.5", "CLEARLY = 0.7"),
-    Mutant("robot_guess/stance.py", "a third of the weight", "CARRIES = 0.5", "CARRIES = 0.33"),
+    Mutant(
+        "robot_guess/stance.py", "a third of the weight", "force > CARRIED * weight", "force > 0.33 * weight"
+    ),
     Mutant(
         "sensors/accelerometer_delay.py",
         "the other's share",
@@ -203,7 +205,7 @@ DRAWN_ANEW = (
     Mutant(
         "sensors/air_zero.py", "a line through three swings", "FEWEST_FOR_DRIFT = 4", "FEWEST_FOR_DRIFT = 3"
     ),
-    Mutant("sensors/air_zero.py", "a drift less clear", "CLEAR_DRIFT = 3.0", "CLEAR_DRIFT = 2.0"),
+    Mutant("sensors/air_zero.py", "a drift less clear", "> SHOWN * uncertainty", "> 2.0 * uncertainty"),
     Mutant(
         "sensors/attitude_scale.py",
         "what it is for what it shows",

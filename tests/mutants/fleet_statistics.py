@@ -11,7 +11,7 @@ FLEET = (
     ),
     Mutant(
         "fleet/statistics/random_effects.py", "the normal's interval instead of Student's",
-        "(1 + LEVEL) / 2, freedom if freedom > 0 else np.inf", "(1 + LEVEL) / 2, np.inf",
+        "0.975, freedom if freedom > 0 else np.inf", "0.975, np.inf",
     ),
     Mutant(
         "fleet/statistics/random_effects.py", "days are not pooled before robots",

@@ -19,7 +19,8 @@ LITERAL_EDGES = (
         ("results/test_reference.py",),
     ),
     Mutant(
-        "faults/channels.py", "half of the doubt kills an encoder", "BEYOND_DOUBT = 5.0", "BEYOND_DOUBT = 2.5",
+        "faults/channels.py", "half of the doubt kills an encoder",
+        "turned > SURE * doubt", "turned > SURE / 2 * doubt",
         ("faults/test_edges_of_encoders.py",),
     ),
     Mutant(

@@ -141,7 +141,7 @@ OF_THEIR_KINDS = (
     Mutant(
         "feet/put_right/imu_of_steps.py",
         "a turn worth a look from one deviation on",
-        "> FAR * mount",
+        "> SHOWN * mount",
         "> mount",
         ("feet/put_right/test_imu_of_steps.py",),
     ),

@@ -7,8 +7,9 @@ import pinocchio as pin
 import pytest
 from scipy.spatial.transform import Rotation
 
+from plantar.feet.interval_width.force_gain import CARRIED
 from plantar.logs.motion_log import MotionLog, wrench_columns
-from plantar.robot_guess.stance import CARRIES, _rows, felt_up
+from plantar.robot_guess.stance import _rows, felt_up
 
 TIME = 0.01 * np.arange(1000)
 
@@ -45,8 +46,8 @@ def test_only_samples_are_taken_that_every_sensor_and_joint_has_read_under_the_r
     columns = {f"imu.chest.orientation.{axis}": np.full(1000, float(axis == "w")) for axis in "wxyz"}
     columns |= {f"joint.{name}.position": np.zeros(1000) for name in names}
     columns |= {column: np.zeros(1000) for side in ("left", "right") for column in wrench_columns(side)}
-    columns["wrench.left.force.z"][:] = columns["wrench.right.force.z"][:] = 0.51 * CARRIES * weight
-    columns["wrench.left.force.z"][:100] = 0.48 * CARRIES * weight
+    columns["wrench.left.force.z"][:] = columns["wrench.right.force.z"][:] = 0.51 * CARRIED * weight
+    columns["wrench.left.force.z"][:100] = 0.48 * CARRIED * weight
     missing = {"wrench.right.torque.x": 200, "imu.chest.orientation.x": 300}
     missing |= {f"joint.{name}.position": 400 + 100 * place for place, name in enumerate(names)}
     for column, sample in missing.items():

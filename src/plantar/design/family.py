@@ -30,7 +30,8 @@ MIRRORED: Final = {
 }  # fmt: skip
 RAMP: Final = 4.0  # s in which each half swells and dies away
 LINES: Final = 2  # sines of each channel
-SHAPES: Final = 1 + 2 * LINES  # of each channel: a place to be at, and the sine and cosine of each line
+SHAPES: Final = 1 + 2 * LINES
+"""Of each channel: a place to be at, and the sine and cosine of each line."""
 # Hz, lowest and highest line of a channel. A foot is told its damping by what is quick, its stiffness by what is large;
 # above 1.2 Hz joints and servos of large robots follow badly, and `identify feet` listens up to 5 Hz. The load is led
 # from foot to foot slowly. Arms and trunk swing at 0.3 to 1 Hz, and the body goes up and down by some millimetres, as

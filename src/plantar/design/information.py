@@ -8,9 +8,11 @@ import numpy as np
 
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import FIRM_RATE, RATE, Reach
-from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
+from plantar.design.rubber import NEARBY, SECANT, remembered
 from plantar.estimation.delays.delay import MODEL_ERROR
 from plantar.estimation.slow_drift import drift_basis
+from plantar.feet.fit.hidden_memory import SLIPS
+from plantar.robot.uncertainty import Uncertainty
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
@@ -19,7 +21,7 @@ MISSED: Final = 0.1
 # Bend to either side [rad] at which `identify feet` surely tells an element that slips from the spring: it asks for
 # 1.25 times the slip angle, and noise of the attitude moves the corners of the path. With this power of what is missing
 # widths grow.
-TOLD_APART: Final = 1.4 * SLIP_ANGLE
+TOLD_APART: Final = 1.4 * SLIPS
 STEEP: Final = 8
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
@@ -31,7 +33,7 @@ WANTED_VERTICAL: Final = 0.3
 UNCLOSED: Final = (0.4, 0.2, 0.2)
 # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push.
 SEEN_FORCE: Final = 6.0
-USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
+USUAL_DELAY: Final = Uncertainty.wrench_delay
 # Times what is wanted: a stiffness within a third is weak, however near it comes to that.
 HOPELESS: Final = 60.0
 BEYOND: Final = 0.1  # share of what is wider still
@@ -41,24 +43,18 @@ OTHERS: Final = 0.5  # share of all numbers beside the widest
 UNEVEN: Final = 1e-4
 
 
-def information(reach: Reach, coefficients: Array) -> Array:
+def information(reach: Reach, bent: Array, rate: Array) -> Array:
     """Information matrices (..., S, feet, 2, 2, 2) of stiffness and damping of each foot and axis, for each of S
-    bushes, of motions with coefficients (..., size).
+    bushes, of firm bends and rates (..., S, feet, 2, M).
 
     An offset, a drift in a line and slow cosines, and an element with hysteresis are eliminated, as `identify feet`
     does: a lean that is held for half a minute shows nothing.
     """
-    bent, rate = (reach.of(part, coefficients) for part in (reach.firm_deflection, reach.firm_rate))
-    return _information(reach, bent, rate)
-
-
-def _information(reach: Reach, bent: Array, rate: Array) -> Array:
-    """The same of bends and rates (..., S, feet, 2, M)."""
     size = bent.shape[-1]
     columns = np.empty((*bent.shape[:-1], 4, size))
     columns[..., 0, :], columns[..., 1, :] = bent, rate
     element = columns[..., 2:, :]
-    element[:] = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(element.shape)
+    element[:] = remembered(bent.reshape(-1, size), (SLIPS, NEARBY * SLIPS)).reshape(element.shape)
     element[..., 1, :] = (element[..., 1, :] - element[..., 0, :]) / np.log(NEARBY)
     slow = np.column_stack([np.full(size, size**-0.5), drift_basis(reach.firm_time)])
     slowly = columns @ slow
@@ -85,7 +81,7 @@ def half_widths(
     bent, rate = (reach.of(part, coefficients) for part in (reach.firm_deflection, reach.firm_rate))
     bend = np.ptp(bent, axis=-1) / 2
     missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
-    found = _information(reach, bent, rate) / missing ** (2 * STEEP) + known
+    found = information(reach, bent, rate) / missing ** (2 * STEEP) + known
     scale = np.sqrt(np.maximum(np.einsum("...ii->...i", found), 1e-12))
     scaled = found / (scale[..., :, None] * scale[..., None, :]) + 1e-9 * np.eye(2)
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale

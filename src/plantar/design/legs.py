@@ -17,10 +17,10 @@ from plantar.errors import MotionError
 from plantar.motions.body import Body
 from plantar.motions.stance import Stance, stand
 from plantar.motions.upper import upper_joints
+from plantar.motions.walk import SETTLED
 from plantar.robot.model import RobotModel
 
 STEPS: Final = 4  # Newton steps from one time to the next
-SETTLE: Final = 60  # before the first
 REACHED: Final = 1e-6  # m and rad: less is not worth a step
 MISSED: Final = 1e-3  # m and rad: more is out of reach
 RISE: Final = 0.03  # of the centre of mass' height: knees are bent so far that the robot can rise by it
@@ -90,11 +90,11 @@ class Legs:
                 *self.body.foot_tasks(self.start.soles),
                 self.body.root_task(pin.SE3(upright, np.zeros(3))),
             ]
-            near = self.body.solve(bent, [*tasks, self.body.centre_task(centre, height=10.0)], bent, SETTLE)
+            near = self.body.solve(bent, [*tasks, self.body.centre_task(centre, height=10.0)], bent, SETTLED)
             try:
                 near = self._with_legs_of(near, self.upper)
-                q = self.solve(near, upright, centre, poses, SETTLE)
-                higher = self.solve(q, upright, centre * [1.0, 1.0, 1.0 + RISE], poses, SETTLE)
+                q = self.solve(near, upright, centre, poses, SETTLED)
+                higher = self.solve(q, upright, centre * [1.0, 1.0, 1.0 + RISE], poses, SETTLED)
             except MotionError:
                 continue
             if self._inside(q) and self._inside(higher):

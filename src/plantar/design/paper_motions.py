@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -21,8 +20,6 @@ from plantar.robot.model import RobotModel
 from plantar.twin.play import planned, roll_each
 from plantar.twin.presets import DEFAULT, preset_named
 from plantar.twin.recording import record
-
-SEED: Final = 0  # of the sensors' noise
 
 
 @dataclass(frozen=True)
@@ -74,7 +71,7 @@ def paper_motions(robot: RobotModel, told: Softness, progress: Callable[[str], N
         if isinstance(rollout, MotionError):
             refused[plan.name] = str(rollout)
             continue
-        logs.append(record(rollout, robot, world, preset, SEED).log)
+        logs.append(record(rollout, robot, world, preset, 0).log)
         played[plan.name] = plan
     free = [name for name, plan in played.items() if plan.hand is None]
     if not free:

@@ -12,9 +12,11 @@ from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot, internal_forces
-from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
+from plantar.design.rubber import SECANT, SHARE, remembered
 from plantar.design.soft_feet import Softness, respond
 from plantar.design.soles import edges, ends, outward
+from plantar.feet.fit.hidden_memory import SLIPS
+from plantar.motions.upper import ROOM
 from plantar.twin.presets import DEFAULT, preset_named
 
 RATE: Final = 20.0  # Hz: eight samples in the quickest sine
@@ -36,7 +38,6 @@ STILL: Final = 1e-9  # of a channel's limit: that one stays at rest
 # Of what each bush is limited by: centres of pressure at the ends and at the sides of soles, friction, load, bend.
 KINDS: Final = ("ends", "sides", "friction", "load", "bend")
 NEAR: Final = 0.8  # of a limit: what a step of the search watches from the start
-ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 
 
 class Reach:
@@ -73,7 +74,7 @@ class Reach:
             for foot in self.feet
         }
         # Of what slips beside every spring, by axis: at least the rubber of the rehearsals, which goes with the weight.
-        rubber = np.array(preset_named(DEFAULT).slip_torques(legs.body.robot)) / SLIP_ANGLE
+        rubber = np.array(preset_named(DEFAULT).slip_torques(legs.body.robot)) / SLIPS
         self.element = np.maximum(told.stiffness * np.array(SHARE) if element is None else element, rubber)
 
         def parts(beside: Array, *names: str) -> list[Array]:
@@ -259,7 +260,7 @@ class Reach:
 
     def _slipping(self, bent: Array) -> Array:
         """What the elements beside the springs add to the series of the soles' edges and of friction, (series, N)."""
-        states = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
+        states = remembered(bent.reshape(-1, bent.shape[-1]), [SLIPS]).reshape(bent.shape)
         torque = self.element[:, None] * states
         edges = [outward(normals, torque[:, place]) for place, (normals, _) in enumerate(self._edges)]
         sides = [self._aside(place, torque) for place in range(len(self.feet))]

@@ -14,9 +14,6 @@ from plantar.models.hysteresis import Path
 # Until it slips the element is a spring of this share of the bush's own, in pitch and roll: the hysteresis of HRP-2's
 # feet is 7 to 10 % of their largest torques.
 SHARE: Final = (1.0, 0.5)
-# It slips after this angle. Motions that bend the bush no farther
-# cannot tell the two apart. The angle itself is unknown, too.
-SLIP_ANGLE: Final = 0.01  # rad
 SECANT: Final = 0.6  # of its stiffness that is left in sways of twice that angle, on the whole
 NEARBY: Final = 1.05  # times: another angle, whose difference shows what the angle changes
 

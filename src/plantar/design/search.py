@@ -30,7 +30,6 @@ AT_ONCE: Final = 2
 # Programs of one step at most: each knows, beside what the motion comes near, the limits that the one before passed.
 # So few of thousands make a program quick.
 CUTS: Final = 10
-PASSED: Final = 1.0  # of a limit
 CLOSE: Final = 0.3  # of a limit: those that a step watches
 SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
 GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not
@@ -152,7 +151,7 @@ class _Climb:
             if not found.success:
                 break
             tried = self.best + self._units * found.x
-            more, room = self._close.near(tried, PASSED)
+            more, room = self._close.near(tried, 1.0)
             if room.min(initial=0.0) > -SLIGHT:
                 break
             rows, left = np.vstack([rows, more]), np.append(left, room + more @ (tried - self.best))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -15,8 +14,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
 from plantar.motions.stance import Stance
 from plantar.motions.track import base_poses, splined
-
-KNOTS: Final = 50.0  # Hz: forty in the quickest sine
+from plantar.motions.walk import KNOTS
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,12 @@ from plantar.conventions import INERTIAL_NAMES, Array
 from plantar.dynamics.equation import PER_LINK, Equation
 from plantar.dynamics.motion import Motion
 
-# (row, column) of the inertia matrix for each of its six parameters, in Pinocchio's order.
 INERTIA_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+"""(row, column) of the inertia matrix for each of its six parameters, in Pinocchio's order."""
 _ROWS, _COLUMNS = np.array(INERTIA_ENTRIES).T
 Indices = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
-DIAGONAL = (4, 6, 9)  # Ixx, Iyy, Izz among the ten
+DIAGONAL = (4, 6, 9)
+"""Ixx, Iyy, Izz among the ten."""
 RANK_TOLERANCE = 1e-8  # of a column's norm: what is left of a dependent column
 PROBING_SEED = 20111  # of the pseudo-random states that find what a fixed base hides
 ROUNDING = 1e-14  # coefficients below it are none

@@ -23,7 +23,7 @@ from plantar.errors import DataError, needs
 
 ROUNDNESS = 4.0  # of the reference body: its radius of gyration squared over the link's own
 SMALLEST_RADIUS = 0.01  # m: of gyration; thinner links count as this thick
-SMALLEST_MASS = 1e-4  # kg
+SMALLEST_MASS = 1e-4  # kg: lighter links count as this heavy
 STEPS = (0.99, 0.9, 0.7)  # shares of the way to a cone's border: shorter ones where the solver stalls
 FLOOR = 1e-5  # of the reference body: what every identified link keeps, so that simulators take it
 

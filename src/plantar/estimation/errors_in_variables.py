@@ -18,17 +18,17 @@ from plantar.estimation.blocks import Block, StanceRows
 from plantar.estimation.linear import fit_blocks, information_inverse
 from plantar.estimation.normal_equations import solved
 from plantar.estimation.stance_problem import StanceProblem, design
+from plantar.estimation.triangular import RANK_TOLERANCE
 from plantar.signals.filters import differentiate, gain, low_pass
 from plantar.signals.medians import median
 from plantar.signals.segments import complete
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
-FEWEST = 50  # samples
+FEWEST = 50  # samples of one recording, for it to take part in a fit or a score: fewer are no motion
 SECOND = 1.0  # s, within which an attitude that wanders is nearly a parabola in time
 PAST_ZERO = 1.5  # of a value: errors draw it to zero, and chance not far past it
 DRAWN = 0.2  # of a value: one from which errors may have taken more is not known
-SHORT = 1e-10  # of a parabola's largest square: what two rows, or one, do not tell
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
@@ -172,7 +172,7 @@ def _beside_parabolas(left: Array, parts: StanceRows) -> float:
     sums = np.add.reduceat(powers, firsts, axis=1).T
     along = np.add.reduceat(powers[:3] * missed, firsts, axis=1).T[:, :, None]
     products = sums[:, np.add.outer(np.arange(3), np.arange(3))]
-    curves = np.linalg.pinv(products, rcond=SHORT, hermitian=True) @ along
+    curves = np.linalg.pinv(products, rcond=RANK_TOLERANCE, hermitian=True) @ along
     return float(weight @ missed**2 - np.sum(along * curves))
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.conventions import Array
-
-RESOLVED = 1e-12  # of the largest eigenvalue, of columns of equal length: those that differ by less are one
+from plantar.conventions import ROUNDING, Array
 
 
 def solved(products: Array, right: Array) -> Array:
@@ -15,6 +13,6 @@ def solved(products: Array, right: Array) -> Array:
     length = np.sqrt(np.diag(products))
     length[length == 0] = 1.0
     told, turn = np.linalg.eigh(products / np.outer(length, length))
-    clear = told > RESOLVED * np.max(told, initial=0.0)
+    clear = told > ROUNDING * np.max(told, initial=0.0)
     axes = turn[:, clear] / length[:, None]
     return np.asarray((axes / told[clear]) @ (axes.T @ right))

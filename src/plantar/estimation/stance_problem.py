@@ -16,12 +16,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import Array
+from plantar.conventions import ROUNDING, Array
 from plantar.estimation.blocks import Block
-from plantar.estimation.normal_equations import RESOLVED
 
 NEVER_FREE = 1e-9  # of a stance's weight, the least prior of its offset: keeps the recording's offset defined
-REGULAR = 1e-2 / RESOLVED  # condition up to which an inverse needs no eigenvalues
+REGULAR = 1e-2 / ROUNDING  # condition up to which an inverse needs no eigenvalues
 LEAST_SHARE = 1e-3  # of the offsets' scatter that counts as the stances' own: keeps the prior finite
 SHORTEST_HALF = 2  # rows of a stance's half, for its mean to be worth comparing
 
@@ -180,7 +179,7 @@ def _scaled_inverse(square: Array) -> Array:
         condition = np.linalg.norm(scaled, axis=(-2, -1)) * np.linalg.norm(inverse, axis=(-2, -1))
         if (condition < REGULAR).all():
             return np.asarray(inverse / outer)
-    return np.asarray(np.linalg.pinv(scaled, rcond=RESOLVED, hermitian=True) / outer)
+    return np.asarray(np.linalg.pinv(scaled, rcond=ROUNDING, hermitian=True) / outer)
 
 
 def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:

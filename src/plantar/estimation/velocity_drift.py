@@ -13,15 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar import _core
-from plantar.conventions import Array
+from plantar.conventions import SURE, Array
 from plantar.estimation.normal_equations import solved
 
-OUTLYING = 5.0  # usual deviations: beyond them a sample is motion rather than drift
 ANNEALED = 2.0  # by which the weights' reach shrinks in a step
 STIFF = 1e8  # by which the first weights are lower than the last
 SETTLED = 5  # steps with the final reach
 FIRST_DRIFT, FIRST_SLOPE = 1.0, 0.3  # m/s, m/s²: deviations of what is known of both before the first sample
-LEAST_JUMP = 1e-10  # m²/s²
+LEAST_JUMP = 1e-10  # m²/s²: a variance above zero, by which the chain of samples can be solved
 
 
 @dataclass(frozen=True)
@@ -66,9 +65,9 @@ def fit_drift(
         square = seen * (np.sum(left.reshape(n, 2) ** 2, axis=1) / (2 * noise**2) + unrest)
         if settled == SETTLED:
             break
-        reach = max(1.0, min(2 * float(square.max()) / OUTLYING**2, reach / ANNEALED))
+        reach = max(1.0, min(2 * float(square.max()) / SURE**2, reach / ANNEALED))
         settled += reach == 1.0
-        allowed = reach * OUTLYING**2
+        allowed = reach * SURE**2
         # Geman and McClure's.
         weight = np.asarray(seen * (allowed / (square + allowed)) ** 2 * most / reach**2)
     drift = (known.reshape(2 * n, -1)[:, 0] - left).reshape(n, 2)

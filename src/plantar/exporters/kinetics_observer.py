@@ -19,9 +19,9 @@ import yaml
 from plantar.conventions import Axis
 from plantar.errors import ExportError
 from plantar.exporters.job import Job
-from plantar.exporters.openhrp import LIMIT
 from plantar.files import read_bounded
 from plantar.notes import Notes
+from plantar.robot.urdf import LIMIT
 
 # Key -> (attribute of the spring, axes in order x y z, the observer's default).
 ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {

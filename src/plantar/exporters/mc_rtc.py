@@ -11,14 +11,12 @@ import json
 import math
 import os
 from dataclasses import dataclass
-from typing import Final
 
 from plantar.errors import ExportError
 from plantar.exporters.job import Job
 from plantar.files import read_bounded
 from plantar.notes import Notes
-
-LIMIT: Final = 2**24  # bytes: a robot module with all its meshes and limits has some hundred thousand
+from plantar.robot.urdf import LIMIT
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,12 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from typing import Final
 
 from plantar.errors import ExportError
 from plantar.exporters.job import Job
 from plantar.files import read_bounded
 from plantar.notes import Notes
-
-LIMIT: Final = 2**20  # bytes: one line a robot
+from plantar.robot.urdf import LIMIT
 
 
 @dataclass(frozen=True)

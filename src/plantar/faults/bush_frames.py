@@ -11,12 +11,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.faults.channels import TURNED
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
 SAMPLES = 500  # spread over the log: enough to tell its usual posture
-TURNED = 0.02  # rad: as much as a bush turns
 BEFORE = 3.0  # times as far before or behind as beside: no posture of a whole log
 
 

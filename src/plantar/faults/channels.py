@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from plantar.conventions import FORCE, GRAVITY, Array, Mask
+from plantar.conventions import FORCE, GRAVITY, SURE, Array, Mask
 from plantar.errors import clock
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
@@ -19,7 +19,6 @@ from plantar.signals.segments import longest_run, runs
 LOST_FRAMES = "lost_frames"
 TURNED = 0.02  # rad by which a joint moves, or the same one of another leg, while its position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
-BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
 # Repeated in a row: fewer a sensor does that is a little slower than the log. Share of the log that is worth a word.
 BURST, LOST = 3, 0.01
@@ -96,14 +95,14 @@ def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
     turned, run = max(((_turned(turns, parted, seconds, run), run) for run in held), key=lambda pair: pair[0])
     moving = np.abs(steps[known & (steps != 0)])
     coarse = float(np.median(moving)) if moving.size else 0.0
-    if turned < max(TURNED, STEPS * coarse, BEYOND_DOUBT * _noise_path(turns[run])):
+    if turned < max(TURNED, STEPS * coarse, SURE * _noise_path(turns[run])):
         return
     doubt = _elsewhere(parted, seconds, run)
     where = (
         f"column 'joint.{joint}.position', t = {clock(log.time[run.start])} to {clock(log.time[run.stop])} s"
     )
     text = f"{where}, value {position[run.start]:.6g}: stands still while its velocity turns {turned:.2g} rad"
-    if turned > BEYOND_DOUBT * doubt:
+    if turned > SURE * doubt:
         yield Finding("dead_channel", f"{text}; the encoder is dead (valid: leave such cells empty)", True)
     else:
         why = f"the velocity alone is off by {doubt:.2g} rad in such a time; is the encoder dead?"

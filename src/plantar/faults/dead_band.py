@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from plantar.contact.phases import LANDING_SHARE
 from plantar.conventions import GRAVITY, Array
 from plantar.faults.channels import named
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
-LOADED = 0.1  # of the weight: in the air a torque of nothing is right
 LEAST_SHARE = 0.01  # of the loaded samples that read exactly 0
 OFTEN = 5.0  # times as often as the next value: of one that reads in steps, 0 is one of many
 FINE = 200  # other values: fewer are a channel that reads in steps as large as its torque
@@ -26,7 +26,7 @@ def check_dead_bands(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         squares = np.zeros(len(log))
         for name in names[:3]:
             squares += log.column(name) ** 2
-        loaded = squares > (LOADED * robot.mass * GRAVITY) ** 2
+        loaded = squares > (LANDING_SHARE * robot.mass * GRAVITY) ** 2
         dead = [name for name in names[3:5] if _share_at_zero(log.column(name)[loaded]) > LEAST_SHARE]
         if dead:
             text = (

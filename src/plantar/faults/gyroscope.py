@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.faults.quaternions import misread, readings, turns_between
+from plantar.faults.stance_changes import BETTER
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
@@ -26,7 +27,6 @@ LEAST_TURN = np.radians(0.5)  # in one window: as large as what an attitude filt
 ABOVE_NOISE = 6.0  # times the noise of a window's turn: large enough where that is less
 FEWEST_WINDOWS = 20  # in which something turns: of fewer one blow is a large share
 WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
-BETTER = 0.5  # share of that difference which another reading of the quaternion must leave at most
 SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by as much
 SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave

@@ -20,8 +20,10 @@ from plantar.faults.joints.stepping_joints import check_stepping_joints
 from plantar.faults.joints.still_joints import check_still_joints
 from plantar.faults.load_signs import check_load_signs
 from plantar.faults.standing import check_balance
+from plantar.faults.torque_unit import LIKE
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.logs.stretches import PERIODS
 from plantar.notes import Finding, Note
 from plantar.robot.model import RobotModel
 from plantar.signals.held import coarse
@@ -29,12 +31,11 @@ from plantar.signals.resampling import sampling
 from plantar.signals.thinning import picked
 
 DEGREES = 180 / np.pi
-FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
+FASTEST, SLOWEST = PERIODS
 QUICKEST, USUAL = 5e-5, 0.05  # s between the samples of robots' logs: one unit alone puts them there
 UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9}  # in a second
 QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
 FORCE_UNITS = {"kgf": GRAVITY, "lbf": 4.4482, "kN": 1e3}  # N
-LIKE = 1.4  # times: feet that carry the robot's weight in another unit
 # A robot on a rope, or one that hangs, may load its feet as little: told, not refused.
 AS_HELD = ("lbf", "kN")
 # Of the weight: a foot that carries so much on average does not stand alone.

@@ -16,13 +16,12 @@ from plantar.faults.stance_changes import (
     NOTABLE,
     StanceChanges,
 )
-from plantar.faults.torque_unit import torque_unit
+from plantar.faults.torque_unit import ROUNDING, torque_unit
 from plantar.logs.motion_log import MotionLog
-from plantar.notes import Finding
+from plantar.notes import NAMED, Finding
 from plantar.robot.model import RobotModel
 
 LEANT = 0.006  # m: what moves by less with the soles' lean may be mounts that are turned by a degree
-ROUNDING = 1e-9  # m
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN = 0.1  # share left: no larger error of masses or mounting is undone so well by chance
 UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
@@ -30,7 +29,6 @@ FARTHEST = 1.5  # m: no posture and no mass is that far off
 PUSHED = 2.0  # times LEANING: more than who holds a robot leans on it
 TURNED = np.radians(10)  # accelerations turn the force by some degrees too
 IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off
-MOST_NAMED = 3  # ways to mount it that one line tells
 LEANS, LEANS_LITTLE = "force_leans", "force_leans_little"  # codes
 
 
@@ -178,7 +176,7 @@ def _alike(changes: StanceChanges) -> str:
     """The signs that leave about as little of the misfit as the best one."""
     left, most = changes.reversed_signs, changes.best_sign + ALIKE * changes.misfit
     alike = sorted((name for name in left if left[name] < most), key=left.__getitem__)
-    return " or ".join(alike[:MOST_NAMED])
+    return " or ".join(alike[:NAMED])
 
 
 def _leaning(changes: StanceChanges) -> Finding | None:

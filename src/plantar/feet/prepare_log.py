@@ -25,7 +25,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.stretches import most_moving
 from plantar.notes import Finding, Note, listing
 from plantar.robot.model import Imu, RobotModel, check_feet
-from plantar.sensors.air_zero import AirZero, air_zero
+from plantar.sensors.air_zero import LOADED, AirZero, air_zero
 from plantar.sensors.attitude_scale import AttitudeScale, log_attitude_scale
 from plantar.sensors.newton_euler import held_for_a_while
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
@@ -44,7 +44,6 @@ VELOCITY_BAND = 4.0  # times the fit's cutoff, up to which joint angles are diff
 CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing from lifting
 FEWEST_READINGS = 10  # of a force sensor in a stance: fewer miss how its torque changes
 LIFTED = 0.05  # of a sole's length: a bush that is let go rises by less, and steps rise higher
-CARRIES = 0.5  # of the weight, by the other foot
 # Of putting a tilted attitude right: a sole is flat below its bush however wrong it is, and crouching changes the IMU's
 # height, so that one round leaves some percent of the tilt.
 TILT_ROUNDS = 3
@@ -165,7 +164,7 @@ def _lifted(robot: RobotModel, raw: Mapping[str, BushState], foot: str) -> Mask:
     """Where a sole is clearly above that of another foot which carries the robot, (N,)."""
     sole = raw[foot].sole_position[:, 2] - LIFTED * float(np.ptp(robot.feet[foot].sole.polygon, axis=0).max())
     others = [state for name, state in raw.items() if name != foot]
-    carried = CARRIES * robot.mass * GRAVITY
+    carried = LOADED * robot.mass * GRAVITY
     above = [(sole > other.sole_position[:, 2]) & (other.force_z > carried) for other in others]
     return np.asarray(np.logical_or.reduce([np.zeros(len(sole), dtype=bool), *above]))
 

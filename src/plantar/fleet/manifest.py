@@ -18,7 +18,7 @@ from plantar.fleet.places import joined_place, name_of
 REQUIRED: Final = ("group", "robot", "log")
 COLUMNS: Final = (*REQUIRED, "role", "time", "unit")
 ROLES: Final = ("fit", "validate")
-LIMIT: Final = 2**30  # bytes
+LIMIT: Final = 2**30  # bytes: some millions of rows
 UTF8_MARK: Final = "\ufeff"
 
 Role = Literal["fit", "validate"]

@@ -13,7 +13,8 @@ import pyarrow.compute as pc
 
 from plantar.conventions import Array
 
-MICROSECONDS: Final = 86400e6  # of a day
+MICROSECONDS: Final = 86400e6
+"""Of a day."""
 EPOCH: Final = date(1970, 1, 1)
 USED: Final = ("stiffness", "damping")
 KEY: Final = ("unit", "foot", "axis", "name", "unit_of_value")

@@ -13,13 +13,12 @@ import pyarrow.parquet as pa_parquet
 
 from plantar.errors import PlantarError
 from plantar.fleet.manifest import Group
-from plantar.fleet.places import Store
+from plantar.fleet.places import AT_ONCE, Store
 from plantar.fleet.unit import Failure, Unit, read_unit, unit_file
 
 RESULTS: Final = "results.parquet"
 FAILURES: Final = "failures.parquet"
 GROUPS: Final = "groups.parquet"  # which finished unit is whose
-AT_ONCE: Final = 1000  # groups in memory
 
 _TEXT: Final = pa.string()
 RESULTS_SCHEMA: Final = pa.schema(

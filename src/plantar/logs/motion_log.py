@@ -15,7 +15,7 @@ import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.errors import LogError
-from plantar.notes import Note, listing
+from plantar.notes import NAMED, Note, listing
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
@@ -44,9 +44,6 @@ def device_of(column: str) -> str:
     """The IMU or force sensor that a column is of, with its kind: `wrench.left` of `wrench.left.force.x`; names may
     hold dots."""
     return column.rsplit(".", 2)[0]
-
-
-HARMLESS = 3  # names of joints that no foot needs: more of them only fill the screen
 
 
 @dataclass(frozen=True, repr=False)
@@ -231,7 +228,7 @@ class MotionLog:
         empty = [name for name in positions if np.isnan(self.columns[name]).all()]
         if not empty:
             return self
-        text = f"{self.name}: never hold a value, taken as not recorded: {listing(empty, HARMLESS)}"
+        text = f"{self.name}: never hold a value, taken as not recorded: {listing(empty, NAMED)}"
         return self.without(empty, Note("joint_empty", "info", text))
 
     def without(self, names: Iterable[str], *notes: Note) -> MotionLog:
@@ -259,7 +256,7 @@ def _missing(robot: RobotModel, names: list[str]) -> str:
         return listing(names)
     if robot.path_joints & set(names):
         return listing(names)
-    return f"{listing(names, HARMLESS)}; none lies between IMU and feet"
+    return f"{listing(names, NAMED)}; none lies between IMU and feet"
 
 
 def _frozen(values: Array) -> Array:

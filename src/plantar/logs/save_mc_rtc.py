@@ -13,8 +13,8 @@ from plantar.errors import needs
 from plantar.files import atomic_write
 
 MAGIC: Final = b"ANNE"  # version 0, which every mc_rtc reads
-# Types of mc_rtc's log entries: a number, a pose, a vector of numbers.
 DOUBLE, POSE, VECTOR = 11, 18, 21
+"""Types of mc_rtc's log entries: a number, a pose, a vector of numbers."""
 # Where the Replay plugin looks: time, what the robot is told, what the encoders read, the floating base.
 KEYS: Final = (("t", DOUBLE), ("qOut", VECTOR), ("qIn", VECTOR), ("ff", POSE))
 

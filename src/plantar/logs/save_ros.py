@@ -10,8 +10,8 @@ from typing import Any
 from plantar.conventions import Array
 from plantar.errors import needs
 from plantar.files import atomic_write
+from plantar.logs.readers.read_limit import BLOCK
 
-BLOCK = 2**22  # bytes copied at a time
 TOPIC = "/joint_trajectory"
 KIND = "trajectory_msgs/msg/JointTrajectory"
 Topic = tuple[str, str, Any]  # name, type, and its serialised messages: bytes, or rows of bytes

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import Array, Mask
+from plantar.conventions import ROUNDING, Array, Mask
 from plantar.model_selection.data_sets import FilteredDataSet, filtered_columns
 from plantar.models import BushModel
 
@@ -24,7 +24,6 @@ TOGETHER = 2**20
 ROUNDS = 6  # of fitting parameters and initial states in turn
 # Of a column's square about zero: what is left about its mean is rounding, the column is constant.
 STILL = 1e-14
-RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
 
 
 @dataclass(frozen=True)
@@ -218,7 +217,7 @@ def solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
     about_zero = np.einsum("tgii->gi", totals[:, :, :-2, :-2])
     moving = square > STILL * about_zero
     scale = np.where(moving, np.sqrt(np.where(moving, square, 1.0)), np.inf)
-    scaled = inner / (scale[:, :, None] * scale[:, None, :]) + RIDGE * np.eye(inner.shape[1])
+    scaled = inner / (scale[:, :, None] * scale[:, None, :]) + ROUNDING * np.eye(inner.shape[1])
     values = np.linalg.solve(scaled, (right / scale)[:, :, None])[:, :, 0] / scale
     squares = centred[:, -1, -1] - np.einsum("gk,gk->g", values, right)
     sums = totals.sum(axis=0, keepdims=True) if shared_offset else totals

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
+from plantar.estimation.orthonormal import RANK_TOLERANCE
 from plantar.estimation.residual_covariance import cosine_covariance, pooled_freedom
 from plantar.estimation.triangular import TriangularFactor
-
-NEGLIGIBLE = 1e-9  # of a column's square left after projection: nothing of its own is left in it
 
 
 class Memory(NamedTuple):
@@ -50,7 +49,7 @@ class Linearised:
         self._own = [slice(end - count, end) for end, count in zip(ends, rows, strict=True)]
         self._ones = self._project(np.ones((len(response), 1)))[:, 0]
         square = self._products(self._ones[:, None])[:, 0]
-        self._has_offset = square > NEGLIGIBLE * np.asarray(rows)
+        self._has_offset = square > RANK_TOLERANCE * np.asarray(rows)
         self._square = np.where(self._has_offset, square, np.inf)
         wide = np.column_stack(
             [design, np.ones(len(design)), response] if shared_offset else [design, response]
@@ -83,7 +82,7 @@ class Linearised:
         effect, run, counts = self._memory
         square = np.bincount(run, effect * effect, sum(counts))
         largest = np.maximum.reduceat(square, np.cumsum([0, *counts[:-1]]))
-        known = square > NEGLIGIBLE * np.repeat(np.maximum(largest, 1e-300), counts)
+        known = square > RANK_TOLERANCE * np.repeat(np.maximum(largest, 1e-300), counts)
         return np.where(known, square, np.inf)
 
     def _reduced(self, columns: Array) -> Array:

@@ -21,7 +21,7 @@ LARGEST_SLIP_ANGLE = 1.3  # of the reach: an element that hardly slips looks lik
 SURE_SLIP_ANGLE = 0.8  # of the reach: beyond it few turns make the element slip, if any but the first
 # Slip angles that are tried, a quarter apart, and closer where few turns are as long: of coarser ones the best led to
 # another minimum.
-RARE = 0.5  # of the reach
+RARE = 0.5  # of the reach: beyond it elements seldom slip, and even steps do
 TRIED, TRIED_RARE = 14, 14  # slip angles on either side of that: steps between them are refined later
 
 

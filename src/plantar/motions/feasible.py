@@ -14,7 +14,7 @@ from plantar.motions.plan import Plan
 
 CHECK_RATE = 50.0  # Hz
 ROOM = 1e-3  # rad: how far a position may pass its limit before it counts
-LEAST = 10.0  # N
+LEAST = 10.0  # N: with less on the ground there is no zero-moment point
 
 
 def check(body: Body, plan: Plan) -> Balance:

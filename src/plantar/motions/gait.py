@@ -22,7 +22,7 @@ PERIODS: Final = {None: 1.0, "Slow": 4.0, "Quick": 0.8}  # s
 SHORTEST, LONGEST = 0.6, 6.0
 WALKING: Final = 24.0  # s of steps in one log
 TURN: Final = np.radians(8.0)  # rad a step, inside the yaw that hips have
-TURN_STEP: Final = 0.08  # m
+TURN_STEP: Final = 0.08  # m: a step of a robot that turns, where the walk's name tells none
 
 
 @dataclass(frozen=True)

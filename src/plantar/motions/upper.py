@@ -12,7 +12,7 @@ from plantar.motions.stance import Stance
 from plantar.motions.track import splined
 
 DURATION = 40.0  # s
-LOW = 0.1  # Hz
+LOW = 0.1  # Hz, at which a sweep begins
 # Variant -> fastest sweep [Hz] and amplitude [rad], less where a limit is near. Quicker arms make the robot stamp; near
 # 0.5 Hz the robot resonates on its bushes, and one draw of the senses there tips it over: that one stays below.
 SWEEPS = {4: (0.4, 0.3), 5: (0.8, 0.35)}

@@ -24,7 +24,7 @@ from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel, load_robot
 from plantar.signals.filters import LOWEST_CUTOFF
 
-LONGEST_DELAY = 0.1  # s
+LONGEST_DELAY = 0.1  # s: sensors in a control loop that are later have a fault
 OF_JOINTS = "joint compliance"  # among the causes of a result's intervals
 
 

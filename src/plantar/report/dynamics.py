@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from plantar.files import write_text
-from plantar.notes import kinds
+from plantar.notes import kinds, listed
 from plantar.pages import on_joints
 from plantar.report.content import Cell, Column, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
-from plantar.report.verdict import LEADS, listed
+from plantar.report.verdict import LEADS
 from plantar.results.dynamics import JOINTS_SCHEMA, ONE_OF_MANY, DynamicsResult, DynamicsScore
 from plantar.results.io import result_path
 from plantar.results.numbers import interval, number, percent, unit, with_uncertainty

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from plantar.notes import listed
 from plantar.report.content import Mark
 from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.feet_text import SYMBOLS
@@ -182,8 +183,3 @@ def _not_beaten(row: ValidationRow) -> str:
     """Which row, and both errors: where the foot hardly moves they are small, and there is nothing to predict."""
     errors = f"{number(row.mean_abs_error, 2)} against {number(row.zero_mean_abs, 2)}"
     return f"{row.motion} {row.foot} {row.axis} ({errors} {'N' if row.axis == 'z' else 'N·m'})"
-
-
-def listed(names: Sequence[str]) -> str:
-    """`a`, `a and b`, `a, b and c`."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import yaml
 
-from plantar.notes import Note
+from plantar.notes import Note, listed
 
 MARK = re.compile(
     r"(?:^|\s)#\s*GUESS\b(?:\s*±\s*(?P<spread>[0-9.]*[0-9])\s*(?P<unit>mm|deg))?[\s:]*(?P<reason>.*)"
@@ -76,9 +76,9 @@ def guess_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:
             feet.setdefault(rest[0], []).append(part + spread)
         else:
             others.append(guess.key)
-    parts = [f"the {foot} foot's numbers depend on {_listing(names)}" for foot, names in feet.items()]
+    parts = [f"the {foot} foot's numbers depend on {listed(names)}" for foot, names in feet.items()]
     if others:
-        parts.append(f"all numbers depend on {_listing(others)}")
+        parts.append(f"all numbers depend on {listed(others)}")
     text = (
         f"{file}: marked GUESS and not measured: {'; '.join(parts)}. {_first(guesses)}, then delete the mark"
     )
@@ -98,10 +98,6 @@ def naming_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:
         return []
     text = f"{file}: joint_names is marked GUESS: which joint of the logs is which must be looked up, not guessed"
     return [Note("guessed_joint_names", "warning", text)]
-
-
-def _listing(names: Sequence[str]) -> str:
-    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
 def _keys(node: yaml.Node | None, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], yaml.Node]]:

@@ -10,13 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.choices import nearest
-from plantar.conventions import Array, skew
+from plantar.conventions import ROUNDING, Array, skew
 from plantar.errors import PlantarError
 from plantar.notes import Note, listing
 
-# Kg·m²: principal moments may break the triangle inequality by what arithmetic leaves.
-ROUNDING: Final = 1e-12
-NAMED: Final = 12  # links named in a note; more are counted
 ENTRIES: Final = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 
 
@@ -66,9 +63,7 @@ def write_inertias(root: ET.Element, model: pin.Model, bodies: Mapping[str, Arra
             text = f"'{carrier.name}': no body can have the identified inertia; simulators may refuse it"
             notes.append(Note("export_inertia", "warning", text))
     if emptied:
-        text = (
-            f"links whose inertia is now in a heavier link that they are fixed to: {listing(emptied, NAMED)}"
-        )
+        text = f"links whose inertia is now in a heavier link that they are fixed to: {listing(emptied)}"
         notes.append(Note("export_lumped", "info", text))
     return tuple(notes)
 

@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from plantar.notes import NAMED
+
 WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
 MEANT = {"l": "left", "r": "right"}
 # Words that say nothing of which joint it is.
@@ -15,7 +17,6 @@ SIDES = re.compile(r"left|right")
 _NOTHING = "|".join(sorted(word for word in SILENT if len(word) > 1))
 AT_ENDS = re.compile(rf"^({_NOTHING})|({_NOTHING})$")
 NUMBERED = re.compile(r"(\D*?)0*([0-9]+)(\D*)")
-MOST_SHOWN = 3  # pairs of names in a message
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ class JointNames:
         """The robot file's line, long lists cut."""
         quoted = {name: f"'{other}'" if other.isdigit() else other for name, other in self.renamed.items()}
         pairs = [f"{name}: {other}" for name, other in quoted.items()]
-        more = ["..."] if len(pairs) > MOST_SHOWN else []
-        listed = f"{{{', '.join(pairs[:MOST_SHOWN] + more)}}}"
+        more = ["..."] if len(pairs) > NAMED else []
+        listed = f"{{{', '.join(pairs[:NAMED] + more)}}}"
         parts = {"prefix": self.prefix, "suffix": self.suffix, "renamed": listed if pairs else ""}
         return f"joint_names: {{{', '.join(f'{key}: {part}' for key, part in parts.items() if part)}}}"
 

@@ -19,7 +19,7 @@ from plantar.files import read_bounded
 from plantar.robot.guesses import Guess, read_guesses
 from plantar.robot.uncertainty import Uncertainty
 
-FILE_LIMIT = 2**20  # bytes
+FILE_LIMIT = 2**20  # bytes: a robot file has some thousand
 DEPTH_LIMIT = 20  # levels of nesting: a robot file needs five
 LONGEST_SOLE = 1.0  # m from its frame to a corner: no robot walks on longer ones
 LONGEST_LINK = 3.0  # m from a link's frame to a sensor on it: no walking robot has longer ones

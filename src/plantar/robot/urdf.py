@@ -14,10 +14,11 @@ import pinocchio as pin
 from plantar.errors import RobotError
 from plantar.files import read_bounded
 
-LIMIT = 64 * 2**20  # bytes
+LIMIT = 64 * 2**20  # bytes: the model of a humanoid has some hundred thousand
 FARTHEST = 20.0  # m from a joint to the next, or from a link to its centre of mass
 _DECLARES = re.compile(r"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
-NO_XML = (2, 3, 5, 7, 8)  # expat's codes: no syntax, no elements, unclosed, mismatched, an attribute twice
+NO_XML = (2, 3, 5, 7, 8)
+"""Expat's codes: no syntax, no elements, unclosed, mismatched, an attribute twice."""
 TURNING = ("revolute", "continuous", "prismatic")  # joints that have an axis
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 

@@ -9,16 +9,15 @@ import numpy as np
 
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.faults.standing import UNEXPLAINED
-from plantar.robot_guess.feet import Sole, box
+from plantar.robot_guess.feet import SHAPE_SPREAD, Sole, box
 from plantar.robot_guess.seat import Seat, pressure, sensor_pose
 from plantar.robot_guess.stance import FEWEST, Stance
+from plantar.sensors.moments.torque_gains import WORTH_SAYING
 
 LOADED = 0.3  # of the weight on a foot whose centre of pressure is looked at
 RARE = 1.0  # % of the samples at either end that are left aside
 EDGE = 0.01  # m: no robot stands on the very edge of its soles
 OUTSIDE = 0.05  # share of the samples that may lie an EDGE or more outside an outline
-ALIKE = 0.005  # m by which the outlines of two feet may differ
-WORTH_A_WORD = 0.03  # of the weight
 MOSTLY = 0.5  # share beyond which even a guessed outline contradicts the centre of pressure
 OFF_WEIGHT = 0.1  # share by which the feet may carry more or less than the URDF weighs: twice `link_mass`
 UNEVEN = 0.02  # m between the planes of two soles
@@ -82,7 +81,7 @@ def check_stance(
         total += np.sum(force * stance.up, axis=1)
     carried = float(np.median(total))
     text = f"the feet carry {carried / GRAVITY:.1f} kg, the URDF weighs {weight / GRAVITY:.1f} kg"
-    if abs(carried - weight) > WORTH_A_WORD * weight:
+    if abs(carried - weight) > WORTH_SAYING * weight:
         text += ": other masses, a gain, or somebody who holds the robot or leans on it"
     found = [Remark(text, abs(carried - weight) > OFF_WEIGHT * weight)]
     unbalanced = left > UNEXPLAINED
@@ -113,7 +112,7 @@ def unlike_soles(soles: Sequence[Sole]) -> list[Remark]:
     (low, high), (other_low, other_high) = sides
     mirrored = np.array([other_low[0], -other_high[1]]), np.array([other_high[0], -other_low[1]])
     apart = max(np.abs(low - mirrored[0]).max(), np.abs(high - mirrored[1]).max())
-    if apart <= ALIKE:
+    if apart <= SHAPE_SPREAD:
         return []
     text = (
         f"the soles' outlines differ by {1e3 * apart:.0f} mm, and feet are usually alike: measure them; where one was "

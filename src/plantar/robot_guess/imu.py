@@ -11,6 +11,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.exporters.poses import pose, rpy_of
 from plantar.exporters.urdf.tree import UrdfTree
+from plantar.notes import NAMED
 from plantar.robot_guess.stance import Stance
 
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[0-9]+")
@@ -19,7 +20,6 @@ NOT_IT = {
     "skin", "hand", "arm", "leg", "foot", "camera", "head", "neck", "lidar", "l", "r", "left", "right", "wrist",
 }  # fmt: skip
 TRUNK = 0.1  # m: an IMU sits so far from the origin of the link that carries it
-MOST_NAMED = 4  # other frames in a comment
 
 # Between up by the IMU and by the soles: more is no mounting tolerance and no soft foot.
 UPRIGHT = np.radians(15)
@@ -67,7 +67,7 @@ def find_frame(tree: UrdfTree, name: str, frame: str) -> Mount:
     else:
         reason = "the first link"
     spread = 0.0 if "imu" in _words(best) else TRUNK
-    return Mount(best, np.eye(3), True, reason, tuple(others[:MOST_NAMED]), spread)
+    return Mount(best, np.eye(3), True, reason, tuple(others[:NAMED]), spread)
 
 
 def _score(words: set[str], said: set[str]) -> float:

@@ -10,6 +10,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from plantar.conventions import FORCE, GRAVITY, Array, Mask, rotation_from_quaternion
+from plantar.feet.interval_width.force_gain import CARRIED
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.robot.kinematics import KinematicTree, centre_of_mass
 from plantar.robot_guess.feet import Sole
@@ -18,7 +19,6 @@ from plantar.signals.segments import spread_out
 
 SAMPLES = 400  # of one log: gravity, balance and outline change slowly
 FEWEST = 20  # samples of a robot that stands, or of a foot that is loaded: fewer say nothing of how
-CARRIES = 0.5  # of the weight: force on both feet together of a robot that stands
 SHARES = 0.15  # of the weight on a foot that takes part
 CALM = 1.0  # Hz: what an accelerometer reads below this is mostly gravity
 
@@ -125,7 +125,7 @@ def _rows(
         if values is not None:
             whole &= np.isfinite(values)
     force = sum(np.linalg.norm(np.nan_to_num(wrench[:, FORCE]), axis=1) for wrench in wrenches)
-    return spread_out(np.flatnonzero(whole & (force > CARRIES * weight)), SAMPLES)
+    return spread_out(np.flatnonzero(whole & (force > CARRIED * weight)), SAMPLES)
 
 
 def _positions(model: pin.Model, log: MotionLog, rows: NDArray[np.int64]) -> Array:

@@ -21,6 +21,7 @@ import numpy as np
 from plantar.contact.phases import carried_weight, detect_contact
 from plantar.contact.standing_imu import sole_motions, standing_loads
 from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array, rotation_from_quaternion
+from plantar.estimation.triangular import RANK_TOLERANCE
 from plantar.estimation.weighted_mean import weighted_mean
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
@@ -39,10 +40,10 @@ LARGEST = 0.01  # s: the filter of an accelerometer of its own; later is a fault
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
-COLUMNS = 11  # the lean, and what goes with it
-ACCELEROMETER, ORIENTATION = 1, 2  # columns: what a late one of them makes of the lean
-# Of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart.
-SINGULAR = 1e-10
+COLUMNS = 11
+"""The lean, and what goes with it."""
+ACCELEROMETER, ORIENTATION = 1, 2
+"""Columns: what a late one of them makes of the lean."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class AccelerometerDelay:
             return 0.0, np.inf
         scale = np.where(size > 0, size, 1.0)
         scaled = products / np.outer(scale, scale)
-        inverse = np.linalg.pinv(scaled[1:, 1:], rcond=SINGULAR, hermitian=True)
+        inverse = np.linalg.pinv(scaled[1:, 1:], rcond=RANK_TOLERANCE, hermitian=True)
         found = inverse @ scaled[1:, 0]
         left = max(1.0 - float(found @ scaled[1:, 0]), 0.0)
         unit = float(scale[0] / scale[1])

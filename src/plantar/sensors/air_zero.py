@@ -10,14 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import FORCE, TORQUE, Array, Mask
+from plantar.conventions import FORCE, SHOWN, TORQUE, Array, Mask
 from plantar.estimation.errors_in_variables import NORMAL
 from plantar.results.walk_rows import SwingZero
 from plantar.signals.segments import runs
 
 FEWEST_SWINGS = 2  # of a foot that nobody sees lifted: fewer may be a foot that slides along
 FEWEST_FOR_DRIFT = 4  # swings: a line through fewer follows their scatter
-CLEAR_DRIFT = 3.0  # times its own deviation: a smaller drift is what single swings differ by
 SHORTEST_SWING = 0.1  # s of the middle of a swing: its first and last quarter may still touch the ground
 LOADED = 0.5  # of the weight, that a foot carries in its stances: one that does not share it with the other
 LARGEST_ZERO = 0.2  # of the weight: a foot that reads more at its lightest is not in the air
@@ -95,7 +94,7 @@ def air_zero(
         slope = _usual_slope(when, seen)
         left = seen - (when - about)[:, None] * slope
         uncertainty = np.std(left, axis=0) / np.sqrt(np.sum((when - about) ** 2))
-        drift = np.where(np.abs(slope) > CLEAR_DRIFT * uncertainty, slope, 0.0)
+        drift = np.where(np.abs(slope) > SHOWN * uncertainty, slope, 0.0)
     left = seen - (when - about)[:, None] * drift
     usual = np.median(left, axis=0)
     scatter = NORMAL * np.median(np.abs(left - usual), axis=0)

@@ -18,11 +18,12 @@ from plantar.contact.phases import FootContact
 from plantar.conventions import Array, rotation_from_quaternion
 from plantar.estimation.orthonormal import without
 from plantar.estimation.slow_drift import drift_basis
+from plantar.faults.gyroscope import SURE
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
 from plantar.sensors.accelerometer_delay import EDGE
-from plantar.sensors.tilt_error import SURE, TOLD, enough_of, lean_of, stance_leans
+from plantar.sensors.tilt_error import KEPT_PER_PERIOD, TOLD, enough_of, lean_of, stance_leans
 from plantar.signals.filters import low_pass
 from plantar.signals.orientation import unit_quaternions
 
@@ -33,7 +34,6 @@ SINGULAR = 1e4  # condition beyond which one pace of sway does not tell scale an
 WITHOUT_LEAN = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the tilt as the soles have it
 # Of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander.
 STAYS = 0.5
-KEPT = 8.0  # samples for each period of TOLD: all of it, and few enough for minutes at a kilohertz
 RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than TOLD
 
 
@@ -93,7 +93,7 @@ def log_attitude_scale(
         return AttitudeScale()
     unit, acceleration, period = unit_quaternions(orientation), log.linear_acceleration(imu.name), log.period
     found, every = AttitudeScale(), enough_of(period)
-    edge, thinned = round(EDGE / (every * period)), max(1, int(1 / (KEPT * TOLD * every * period)))
+    edge, thinned = round(EDGE / (every * period)), max(1, int(1 / (KEPT_PER_PERIOD * TOLD * every * period)))
     step = thinned * every * period
     to_world = rotation_from_quaternion(unit)
     for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period, every):

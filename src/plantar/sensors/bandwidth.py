@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import SURE, Array
+from plantar.estimation.delays.lag_search import WINDOW
 from plantar.notes import Note
 from plantar.sensors.newton_euler import NewtonEulerResidual
 
 Spectra = NDArray[np.complex128]
 
 FILTERED = "filtered"
-SEGMENT = 4.0  # s of the spectra's segments, which overlap by half
 BAND = (0.5, 6.0)  # Hz: slower motion shows no low-pass, and Newton's law itself is looked at below 8 Hz
 COHERENT = 0.9  # squared coherence, from which a frequency counts
 FEWEST = 12  # axes and frequencies that do
@@ -66,7 +66,7 @@ def fading(residuals: Sequence[NewtonEulerResidual]) -> Fading | None:
 
 def _spectra(residual: NewtonEulerResidual) -> list[tuple[Array, tuple[Spectra, Spectra, Spectra]]]:
     """Of each segment the frequencies (k,) [Hz], and both sides' powers and their product, (k, 6)."""
-    pair, length = residual.pair, round(SEGMENT / residual.pair.period)
+    pair, length = residual.pair, round(WINDOW / residual.pair.period)
     window, frequency = np.hanning(length)[:, None], np.fft.rfftfreq(length, pair.period)
     kept = (frequency >= BAND[0]) & (frequency <= BAND[1])
     found = []

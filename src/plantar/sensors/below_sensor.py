@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from plantar.contact.phases import widened
+from plantar.contact.phases import LANDING_SHARE, widened
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, Mask
 from plantar.dynamics import Contact, Equation
 from plantar.dynamics.equation import ALL_PARAMETERS, BASE_ROWS, PER_LINK
@@ -21,7 +21,6 @@ from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.air_zero import air_zero
 from plantar.sensors.load_errors import APART
 
-IN_AIR = 0.1  # of the weight, that a foot in the air may read
 LANDING = 0.15  # s around contact: the low-pass smears it
 SHORTEST = 1.0  # s in the air: less is hardly more than the noise
 LEAST_NOISE = 1e-3  # N, N.m: a dead sensor reads without any
@@ -66,7 +65,7 @@ def below_sensors(
         read = (carried @ own[swings][:, :, None])[..., 0]
         radius = np.sqrt(np.trace(body.matrix()[TORQUE, TORQUE]) / (2 * body.mass))
         sizes = body.mass * np.repeat([1.0, radius, np.trace(_plate(foot)) / 3], [1, 3, 6])
-        largest = IN_AIR * robot.mass * GRAVITY
+        largest = LANDING_SHARE * robot.mass * GRAVITY
         columns = np.concatenate([-inertia, carried], axis=2)
         values = _least_squares(
             columns, read, np.append(sizes, np.full(6, largest)), foot, min(period / APART, 1.0)
@@ -94,7 +93,9 @@ def _in_air(reading: Array, weight: float, period: float) -> Mask:
     force = reading[:, FORCE]
     time: Array = period * np.arange(len(force), dtype=np.float64)
     zero = air_zero(time, reading, np.asarray(np.linalg.norm(force, axis=1)), weight)
-    touching = np.linalg.norm(force - (0.0 if zero is None else zero.middle[FORCE]), axis=1) > IN_AIR * weight
+    touching = (
+        np.linalg.norm(force - (0.0 if zero is None else zero.middle[FORCE]), axis=1) > LANDING_SHARE * weight
+    )
     return np.asarray(~widened(touching, round(LANDING / period)))
 
 

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
+from plantar.contact.standing_imu import TURN
 from plantar.conventions import Array
 from plantar.dynamics import Equation
 from plantar.dynamics.equation import PER_LINK
@@ -17,7 +18,6 @@ from plantar.robot.model import RobotModel
 # A spread is then known to a tenth of itself. Of sixteen, what a wrong URDF does to delays was a seventh too small,
 # in all logs of a robot.
 DRAWS = 48
-TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 LIGHT = 0.002  # of the robot's mass: a twentieth of it is no more than what a force sensor's noise is
 SEED = 0  # the same draws for every recording: the robot is the same
 

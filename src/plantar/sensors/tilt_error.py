@@ -20,7 +20,9 @@ import numpy as np
 
 from plantar.contact.deflection import BushState, FootMotion
 from plantar.contact.phases import FootContact
+from plantar.contact.stances import LONGEST_STANCE
 from plantar.conventions import GRAVITY, Array, cross, rotation_from_quaternion
+from plantar.faults.gyroscope import SURE
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
@@ -31,16 +33,14 @@ from plantar.signals.segments import runs
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
 LEAST_RATE = 0.01  # 1/s: below it the damping is not affected
 EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that shows it
-# Or so many deviations: beside a noisy gyroscope it explains little, and moves the damping as much.
-SURE = 6.0
-AXES = 2  # of the horizontal plane, in which the vertical leans
+AXES = 2
+"""Of the horizontal plane, in which the vertical leans."""
 CORRECTED = 3.0  # Hz, up to which the attitude is put right: as far as robots sway
 TOLD = 1.5  # Hz, up to which leans tell of sensors that are late or turned
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
 # Samples of DERIVED's period: differences of such leave the band below TOLD as it is.
 KEPT_PER_PERIOD = 8.0
-SHORTEST_STANCE = 5.0  # s on the same feet
-PADDING = 2.0  # s
+PADDING = 2.0  # s that are mirrored at both ends of a stance: as long as a lean answers to
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period:
     predicted = low_pass(-cross(cross(direction, up), up), period, BAND)
     error = differentiate(believed, period) + turned
     known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
-    if known.sum() * period < SHORTEST_STANCE:
+    if known.sum() * period < LONGEST_STANCE:
         return NO_TILT_ERROR
     error, predicted = (part[known] - part[known].mean(axis=0) for part in (error, predicted))
     product, whole, apart = (
@@ -157,7 +157,7 @@ def put_right(
     contacts: Mapping[str, FootContact],
     period: float,
 ) -> Array:
-    """The orientation (N, 4) as the soles that stand have it; unchanged where none stands for SHORTEST_STANCE.
+    """The orientation (N, 4) as the soles that stand have it; unchanged where none stands for LONGEST_STANCE.
 
     acceleration: proper, in the IMU's frame, (N, 3); bushes: computed with this orientation.
     """
@@ -212,7 +212,7 @@ def stance_leans(
             if stands[pattern == which].all()
         ]
         for run in runs(np.asarray(finite & (pattern == which))):
-            if (run.stop - run.start) * period >= SHORTEST_STANCE:
+            if (run.stop - run.start) * period >= LONGEST_STANCE:
                 place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
                 height = -float(np.median(place[:, 2]))
                 yield run, lean_of(push[run], place[:, :2], height, period, every, band), height

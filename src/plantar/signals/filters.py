@@ -11,10 +11,10 @@ from plantar.conventions import Array
 
 LOWEST_CUTOFF = 0.1  # Hz: below it nothing of a motion is left
 FILTER_ORDER = 4  # Butterworth, run forth and back
-SHORTEST_RUN = 27  # samples
+SHORTEST_RUN = 27  # samples: of fewer a filter that runs forth and back sees ends alone
 SHORTEST_FITTED_RUN = 8  # samples of a stance, or between gaps of a thinned log: one cycle of the cutoff
 PADDED = 3.0  # of the cutoff's period, by which a run is continued: its filter has settled by then
-MOST_PADDED = 10_000  # samples
+MOST_PADDED = 10_000  # samples, however quick the log: so slow a filter is no motion's
 KEPT = 2  # lengths whose cosines are: groups of one log's signals ask one after the other
 
 

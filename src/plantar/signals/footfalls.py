@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import FORCE, Array
+from plantar.conventions import FORCE
 from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.signals.medians import running_median
 
 LOADED = 0.1  # of a foot's largest force: where it passes this, the foot lands or leaves
 LONE = 5  # samples over which a median is taken: no lone sample lands a foot
@@ -18,13 +19,5 @@ def footfalls(log: MotionLog, sensor: str) -> NDArray[np.intp]:
     if len(log) < LONE or not log.has(*columns):
         return np.zeros(0, dtype=np.intp)
     squares = sum((log.column(name) ** 2 for name in columns), np.zeros(len(log)))
-    steady = _medians(np.nan_to_num(np.sqrt(squares)))
+    steady = running_median(np.nan_to_num(np.sqrt(squares)), LONE)
     return LONE // 2 + np.flatnonzero(np.diff(steady > LOADED * steady.max()))
-
-
-def _medians(values: Array) -> Array:
-    """Medians of LONE consecutive values: the middle one of the inner ones of two pairs and of the fifth value."""
-    a, b, c, d, e = (values[first : len(values) - LONE + 1 + first] for first in range(LONE))
-    one = np.maximum(np.minimum(a, b), np.minimum(c, d))
-    other = np.minimum(np.maximum(a, b), np.maximum(c, d))
-    return np.asarray(np.maximum(np.minimum(one, other), np.minimum(np.maximum(one, other), e)))

@@ -14,13 +14,13 @@ from plantar.logs.motion_log import MotionLog, device_of
 from plantar.notes import Note, Severity
 from plantar.signals.dropouts import FAR_STEPS
 from plantar.signals.footfalls import footfalls
+from plantar.signals.held import NOTABLE
 
 NEIGHBOURS = 2  # on either side: a segment of more than two samples is no spike
 LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
 GROUP_GAP = 0.15  # s around a spike, or around a foot that lands or leaves
 FEW = 8  # quick steps around a spike: more make an impact and what it leaves ringing
 QUICK = 0.9  # quantile of the steps around landings: usual there
-SERIOUS = 0.005  # share of a column that is worth a look at the sensor; coarse sampling makes half as many
 MOST = 0.02  # share of a column that may be spikes: more of them are what this sensor reads
 
 
@@ -54,7 +54,7 @@ def without_spikes(log: MotionLog) -> MotionLog:
         told.append(f"{name} ({places.size}, first at t = {clock(log.time[first])} s: {column[first]:.4g})")
     more = f" and {len(told) - 3} more columns" if len(told) > 3 else ""
     text = f"{log.name}: lone samples far from their neighbours bridged: {', '.join(told[:3])}{more}"
-    severity: Severity = "warning" if max(map(len, spikes.values())) > SERIOUS * len(log) else "info"
+    severity: Severity = "warning" if max(map(len, spikes.values())) > NOTABLE * len(log) else "info"
     return log.with_columns(bridged, Note("spikes", severity, text))
 
 

@@ -14,6 +14,7 @@ from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, 
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
 from plantar.errors import DataError, RobotError
+from plantar.estimation.errors_in_variables import FEWEST
 from plantar.faults.imu import without_odd_accelerometer
 from plantar.faults.log_faults import check_log, refuse_impossible
 from plantar.logs.motion_log import MotionLog
@@ -25,7 +26,6 @@ from plantar.signals.resampling import evenly_sampled
 from plantar.signals.segments import run_ends
 from plantar.whole_body.settings import DynamicsSettings
 
-FEWEST_SAMPLES = 50  # of a log: fewer are no motion
 # rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise.
 COULOMB_SPEED = 0.02
 STANDING_SHARE = 0.2  # of the weight, on one foot: it stands
@@ -120,9 +120,9 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     edge = 0 if given else round(1 / settings.cutoff / period)
     valid &= ~run_ends(valid, edge)
     left_out = int(np.sum(~valid))
-    if valid.sum() < FEWEST_SAMPLES:
+    if valid.sum() < FEWEST:
         raise DataError(
-            f"has {valid.sum()} samples that can be used", path=log.source, valid=f"{FEWEST_SAMPLES} or more"
+            f"has {valid.sum()} samples that can be used", path=log.source, valid=f"{FEWEST} or more"
         )
     if left_out > 2 * edge:
         text = f"{log.name}: {left_out} of {len(even)} samples left out (NaN, gaps and their surroundings)"
@@ -147,7 +147,7 @@ def _root(
         return root_motion(body.equation, link, placement, measured, q, v, a), known
     standing = {name: _stands(body, log, name) for name in robot.feet}
     name = max(standing, key=lambda foot: int(standing[foot].sum()))
-    if standing[name].sum() < FEWEST_SAMPLES:
+    if standing[name].sum() < FEWEST:
         valid = "IMU columns angular_velocity and linear_acceleration, or a foot that stands still"
         raise DataError("does not tell how the root link moves", path=log.source, valid=valid)
     link, placement = robot.frame(robot.feet[name].sole.placement)

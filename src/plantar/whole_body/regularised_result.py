@@ -24,8 +24,6 @@ from plantar.whole_body.regularised_fit import RegularisedFit
 from plantar.whole_body.scores import Place, scored, worse_notes
 from plantar.whole_body.whole_logs import WholeLogs
 
-NAMED = 12  # unexcited parameters named in a note; more are counted
-
 
 def result_of(
     schema: str,
@@ -83,7 +81,7 @@ def excitation_of(fit: RegularisedFit) -> tuple[int, float, list[Note]]:
     n_base, said = len(fit.base), []
     names = [fit.base.names[k] for k in np.flatnonzero(~solution.excited[:n_base])]
     if names:
-        said.append(f"from the URDF, not from the data: {listing(names, NAMED)}")
+        said.append(f"from the URDF, not from the data: {listing(names)}")
     if terms := int(np.sum(~solution.excited[n_base:])):
         said.append(f"{terms} of the joints' terms cannot be told apart")
     text = f"the motions excite {solution.rank} of {len(solution.values)} directions; {'; '.join(said)}"

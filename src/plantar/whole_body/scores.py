@@ -17,7 +17,6 @@ from plantar.whole_body.folds import Samples
 from plantar.whole_body.regularised_fit import RegularisedFit
 
 Kind = Literal["direct", "cross"]
-NAMED = 6  # rows named in a note; more are counted
 WORSE = 1.5  # times the URDF's error: by less unseen motions differ by chance
 
 
@@ -63,7 +62,7 @@ def worse_notes(scores: Sequence[DynamicsScore]) -> list[Note]:
     said = [f"{one.motion}: {one.axis or one.joint}: {one.rms_error:.3g} against {one.cad_rms_error:.3g} {one.unit} rms"
             for one in worse]  # fmt: skip
     text = "the URDF alone predicts unseen motions better: use its inertias, or record larger and quicker motions"
-    return [Note("worse_than_urdf", "warning", f"{text} ({listing(said, NAMED)})")] if said else []
+    return [Note("worse_than_urdf", "warning", f"{text} ({listing(said)})")] if said else []
 
 
 def _score(

@@ -10,14 +10,14 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.information import WANTED
-from plantar.design.rubber import SLIP_ANGLE
 from plantar.design.story import LONGEST, Design
+from plantar.feet.fit.hidden_memory import SLIPS
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
 WANTED_OF: Final = dict(zip(KelvinVoigt().terms, WANTED, strict=True))
-TOLD_APART: Final = SLIP_ANGLE / SURE_SLIP_ANGLE  # rad, what `identify feet` asks for
+TOLD_APART: Final = SLIPS / SURE_SLIP_ANGLE  # rad, what `identify feet` asks for
 
 
 def foretold(found: Design, parameters: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -67,7 +67,7 @@ def _weak(
     )
     return (
         f"{said}. Over this range of stiffness the motion bends it by {1e3 * least:.3g} mrad to either side; rubber "
-        f"that slips at {1e3 * SLIP_ANGLE:.3g} mrad is surely told from its spring beyond {1e3 * TOLD_APART:.3g}. That "
+        f"that slips at {1e3 * SLIPS:.3g} mrad is surely told from its spring beyond {1e3 * TOLD_APART:.3g}. That "
         f"would need feet no stiffer than {most:.3g} N·m/rad: {advice}"
     )
 

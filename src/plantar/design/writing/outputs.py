@@ -25,7 +25,7 @@ from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel
 
 SCHEMA = "plantar.design/1"
-SLOWEST, FASTEST = 20.0, 2000.0  # Hz
+SLOWEST, FASTEST = 20.0, 2000.0  # Hz: rates of controllers that play joint positions
 APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.signals.filters import differentiate, low_pass
 
-BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
+BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz: from where postures change to where encoders are noise
 SAMPLES_PER_CYCLE = 8  # of a band's upper edge, that thinning keeps
 # Of a band's lower edge, at both ends: a filter there sees the end itself, which no delay moves.
 END_CYCLES = 2.0
@@ -21,7 +21,8 @@ MOST_ENDS = 0.5  # of a recording that ends may take
 # Of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %.
 LEAST_SHARE = 1e-4
 LONG = 10_000  # samples beyond which threads filter axes beside each other
-HALVES = (0, 2)  # the places of the parts that are halves
+HALVES = (0, 2)
+"""The places of the parts that are halves."""
 
 
 @dataclass(frozen=True)

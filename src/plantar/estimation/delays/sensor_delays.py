@@ -13,10 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import ROUNDING, Array
 from plantar.estimation.delays.bands import Band, bands_of
 from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, MODEL_ERROR
-from plantar.estimation.normal_equations import RESOLVED
 from plantar.estimation.residual_covariance import score_cosines
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
@@ -69,7 +68,7 @@ class _Cell:
         """How each moment's miss pulls at the delays (delays,) that are found, by its lowest cosines, (m, delays)."""
         gains, late = self.band.signals[self.axis, : self.band.sensors], self.band.late
         signals = self.band.signals[self.axis, late.start :]
-        signals = signals - np.linalg.lstsq(gains.T, signals.T, rcond=RESOLVED)[0].T @ gains
+        signals = signals - np.linalg.lstsq(gains.T, signals.T, rcond=ROUNDING)[0].T @ gains
         columns, missing = signals[:-1], signals[-1]
         return score_cosines((columns * (missing - values @ columns)).T, self.band.duration)
 
@@ -164,6 +163,6 @@ def _beside(products: Array, count: int) -> Array:
     own, across = products[..., :count, :count], products[..., :count, count:]
     size = np.sqrt(np.diagonal(own, axis1=-2, axis2=-1))[..., None]
     size = np.where(size > 0, size, 1.0)
-    inverse = np.linalg.pinv(own / size / np.swapaxes(size, -1, -2), rcond=RESOLVED, hermitian=True)
+    inverse = np.linalg.pinv(own / size / np.swapaxes(size, -1, -2), rcond=ROUNDING, hermitian=True)
     across = across / size
     return np.asarray(products[..., count:, count:] - np.swapaxes(across, -1, -2) @ inverse @ across)

@@ -17,7 +17,7 @@ from plantar.exporters.job import LEAST_LOAD
 LOADS: Final = (0.5, 0.8, 1.1)  # of the robot's weight: two feet, on the way, one foot that is pushed
 STEPS: Final = (0.0005, 0.001, 0.002, 0.004)  # s
 ROUNDS: Final = 4  # each takes a tenth or less of the error over
-FIT_STEP: Final = 0.001  # s
+FIT_STEP: Final = STEPS[1]
 NEAR: Final = (0.05, 0.15)  # errors of K and of C with which a step or an angle is said to hold
 SHARES: Final = (0.5, 0.75, 0.95, 1.2)  # of the angle at which a point leaves the ground
 

@@ -21,7 +21,7 @@ from plantar.exporters.xml_file import child_of, numbers
 SLIPPING_TIME: Final = 0.01  # s
 IMPERFECT: Final = 1e-4  # of the friction, MuJoCo's least
 MASS: Final = 1e-3  # kg: MuJoCo wants some
-SIZE: Final = 0.005  # m
+SIZE: Final = 0.005  # m: radius of the body that slips, which touches nothing
 
 
 def slip_joint(foot: FootBush, spring: Spring) -> str:

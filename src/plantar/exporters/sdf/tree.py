@@ -17,10 +17,9 @@ from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
 from plantar.exporters.urdf.geometry import mesh_points, solid_corners
-from plantar.exporters.xml_file import load_xml, numbers, vector
+from plantar.exporters.xml_file import DEPTH_LIMIT, load_xml, numbers, vector
 
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame
-FRAME_DEPTH = 100  # frames within frames: no model has so many
 
 
 class SdfTree:
@@ -54,7 +53,7 @@ class SdfTree:
         """Pose of a link, joint or frame in the model frame, (4, 4)."""
         if name in ("", "__model__"):
             return np.eye(4)
-        if depth > FRAME_DEPTH:
+        if depth > DEPTH_LIMIT:
             raise ExportError(f"frame '{name}' refers to itself", path=self.path)
         if name in self.links:
             element, default = self.links[name], ""

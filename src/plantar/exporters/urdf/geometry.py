@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import Array
 
-MESH_LIMIT = 256 * 2**20  # bytes
+MESH_LIMIT = 256 * 2**20  # bytes of one mesh: millions of triangles
 
 
 def box_corners(size: Array) -> Array:

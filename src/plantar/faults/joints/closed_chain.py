@@ -16,34 +16,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.phases import LANDING_SHARE
 from plantar.contact.relative_pose import relative_pose
 from plantar.contact.slip_indicator import YAW_MOMENT_ARM
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.errors import clock
+from plantar.faults.bush_frames import SAMPLES
+from plantar.faults.channels import STEPS
 from plantar.faults.joints.names import legs
+from plantar.faults.stance_changes import BETTER
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 from plantar.signals.segments import complete, longest_run, run_numbers, spread_out
 
-LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
 CARRIES, IN_AIR = 0.6, 0.2  # of the weight: a foot that carries the robot alone, the other one with its zero
 LIFTED = 0.005  # m: less is how soles lean and bushes give way; small robots lift their feet by a centimetre
 SURELY = 0.8  # share of the samples
 EACH = 0.2  # of the samples, in which each foot of a robot that steps carries it
 LEAST_ANGLE = 0.01  # rad: less harms no fit of bushes that turn by degrees
-ENCODER_STEPS = 5.0  # of the joint's own encoder, likewise: between two of them it stands
 # Of what the encoders' steps of all joints together make of the angle: rounding of a dozen joints stays within it.
 ROUNDING = 2.0
 FINEST = 0.05  # of the changes of a position, that are no larger than its encoder's step where that is coarse
 LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, and do little harm
-SAMPLES = 500  # spread over that time: enough to tell
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
 # Share of the soles' motion that is left with the legs exchanged: what sways is seldom symmetric.
 EXCHANGED = 0.4
-CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave
 SURELY_CLOSED = 0.3  # likewise, where the torque does not tell
-FOLLOWED = 0.5  # share of the torque's misfit that it may leave
 FOLLOWS = 0.3  # share of the torque's variance that may then not follow the bush's angle
 
 
@@ -87,7 +86,7 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     known = whole.copy()
     for load, each in zip(loads, robot.feet.values(), strict=True):
         if each.contact != "always":
-            known &= load > LOADED
+            known &= load > LANDING_SHARE
 
     def stand(rows: slice | NDArray[np.intp]) -> _Stand:
         chosen = {name: values[rows] for name, values in wrenches.items()}
@@ -119,7 +118,7 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             rows = slice(stretch.start, stretch.stop, max(1, length // SAMPLES))
             stands[stretch.start, stretch.stop] = stand(rows)
         angle, sure = _own_angle(stands[stretch.start, stretch.stop], joint, foot, finest)
-        if angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
+        if angle < max(LEAST_ANGLE, STEPS * _encoder_step(values)):
             continue
         when = f"t = {clock(log.time[stretch.start])} to {clock(log.time[stretch.stop - 1])} s"
         where = f"column 'joint.{joint}.position', {when}, value {values[stretch.start]:.6g}"
@@ -207,12 +206,12 @@ def _own_angle(stand: _Stand, name: str, foot: str, finest: Mapping[str, float])
     left = apart + moves * angle[:, None]
     total = float(np.sum(apart**2))
     missed = float(np.sqrt(np.sum(left**2) / total)) if total > 0 else np.inf
-    if missed > CLOSED or np.ptp(angle) < ROUNDING * _of_rounding(stand, moves, finest):
+    if missed > BETTER or np.ptp(angle) < ROUNDING * _of_rounding(stand, moves, finest):
         return 0.0, False
     closed = stand.turned(joint, angle)[foot]
     axis = int(np.argmax(np.std(closed.deflection - as_read[foot].deflection, axis=0)))
     before, after = (_unexplained(state, axis) for state in (as_read[foot], closed))
-    follows = after < min(FOLLOWS, FOLLOWED * before)
+    follows = after < min(FOLLOWS, BETTER * before)
     return (float(np.ptp(angle)) if follows or missed < SURELY_CLOSED else 0.0), follows
 
 

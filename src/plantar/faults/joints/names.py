@@ -8,11 +8,9 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from plantar.logs.motion_log import MotionLog
-from plantar.notes import Finding, listing
+from plantar.notes import NAMED, Finding, listing
 from plantar.robot.joint_names import propose_names, propose_order
 from plantar.robot.model import RobotModel
-
-MOST_NAMED = 3  # names in one line
 
 
 def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -79,4 +77,4 @@ def legs(robot: RobotModel) -> dict[str, list[str]]:
 
 
 def _listing(names: Collection[str]) -> str:
-    return listing(sorted(names), MOST_NAMED)
+    return listing(sorted(names), NAMED)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, SHOWN, Array
 from plantar.estimation.orthonormal import without
 from plantar.estimation.slow_drift import drift_basis
 from plantar.feet.assess.residual_table import Predictions
@@ -20,7 +20,6 @@ from plantar.results.scores import error_measures
 HOLDS = 0.3  # mean error over that of a constant, of the liveliest motion: the model holds
 MISSED = 0.5  # likewise, of a motion that contradicts it
 LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
-TURNED = 3.0  # deviations of a mount: one that is turned by more is a fault, and to be named
 ROUNDS = 2  # of Gauss and Newton: a bush with a memory is not linear in its deflection
 
 
@@ -65,7 +64,7 @@ def beside_drift(
     row: ValidationRow, fitted: FittedModel, recording: Recording, predictions: Predictions, mount: float
 ) -> ValidationRow:
     """The score without what drifts slowly (`estimation.slow_drift`), in error and torque alike, nor what a turn of the
-    IMU by less than `TURNED` times `mount` [rad] explains of the error.
+    IMU by less than `SHOWN` times `mount` [rad] explains of the error.
 
     A foot that steps is scored with an offset of its own in each stance, which follows any drift.
     """
@@ -91,7 +90,7 @@ def beside_drift(
         turned = _mount_that_fits(
             left, as_fitted, mount, np.count_nonzero(prediction.scored) * recording.period
         )
-        missed = left(turned) if np.abs(turned).max() < TURNED * mount else missed
+        missed = left(turned) if np.abs(turned).max() < SHOWN * mount else missed
     return replace(row, **error_measures(quick(torque), quick(torque) - missed, 0.0))
 
 

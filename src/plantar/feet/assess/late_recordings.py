@@ -27,7 +27,8 @@ from plantar.notes import Note
 RECORDING_LATE = "recording_late"
 FEWEST = 8  # stances of a recording: four say how much they scatter
 TINY = 1e-9  # N.m.s/rad: exact logs have no deviation
-RATE = 1  # the place of the rate, and of damping, in spring and damper
+RATE = 1
+"""The place of the rate, and of damping, in spring and damper."""
 
 
 def late_recordings(tangent: Tangent, wide: AxisFit) -> list[Note]:

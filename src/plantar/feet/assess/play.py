@@ -11,14 +11,13 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, SURE, Array
 from plantar.estimation import fit_blocks
-from plantar.feet.place.misread_joints import BETTER
+from plantar.feet.place.misread_joints import BETTER, SOFT
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, blocks_of
 from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
 
-SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step
 CODE = "play"
 
 

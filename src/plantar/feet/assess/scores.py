@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from typing import Literal
 
 from plantar.conventions import ROTATIONAL_AXES
+from plantar.estimation.errors_in_variables import FEWEST
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.regression.prediction import predict
-from plantar.feet.regression.regression_data import FEWEST_SAMPLES
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import score
 
@@ -23,7 +23,7 @@ def score_axis(
     rows, predictions = [], Predictions()
     for recording in recordings:
         prediction = predict(recording, fitted)
-        if prediction is None or prediction.scored.sum() < FEWEST_SAMPLES:
+        if prediction is None or prediction.scored.sum() < FEWEST:
             continue
         predictions[recording.name, foot, axis] = prediction
         scored = prediction.scored

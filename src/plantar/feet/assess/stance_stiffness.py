@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from plantar.contact.stances import FEWEST_STANCES
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_blocks, interval95
 from plantar.estimation.errors_in_variables import attenuation
@@ -15,9 +16,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import blocks_of, recordings_of
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
-
-FEWEST_STANCES = 3  # of one recording: the scatter of two says next to nothing
-FEWEST_ROWS = 8  # of one stance, for a slope, an offset and what both miss
+from plantar.signals.filters import SHORTEST_FITTED_RUN
 
 
 def stance_stiffness(recordings: Sequence[Recording], fit: AxisFit) -> list[StanceStiffness]:
@@ -32,7 +31,7 @@ def stance_stiffness(recordings: Sequence[Recording], fit: AxisFit) -> list[Stan
         assert block.stances is not None, "blocks of a foot that steps"
         time = recording.time[recording.rows(fit.foot)]
         for rows in block.stances.split():
-            if len(rows) < FEWEST_ROWS:
+            if len(rows) < SHORTEST_FITTED_RUN:
                 continue
             value, information = _slope(block, rows, fit)
             if information > 0:

@@ -8,14 +8,14 @@ import numpy as np
 
 from plantar.contact.deflection import BushState
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
+from plantar.estimation.errors_in_variables import FEWEST
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.regression.prediction import predict
-from plantar.feet.regression.regression_data import FEWEST_SAMPLES
 from plantar.signals.medians import running_median
 from plantar.signals.segments import runs
 
-BIN = 0.1  # s
+BIN = 0.1  # s of samples that are judged together: shorter than any motion
 AROUND = 6.0  # s whose usual misfit a bin is compared with
 FAR_MISFITS = 6.0  # usual misfits
 WORTH = 0.03  # of the recording's spread of torque: a smaller misfit, or a jump of the zero, does no harm
@@ -29,7 +29,7 @@ def outlier_masks(recordings: Sequence[Recording], fitted: FittedModel) -> dict[
     foot, column, found = fitted.foot, ROTATIONAL_AXES.index(fitted.axis), {}
     for recording in recordings:
         used = recording.used(foot)
-        if recording.name not in fitted.offsets or used.sum() < FEWEST_SAMPLES:
+        if recording.name not in fitted.offsets or used.sum() < FEWEST:
             continue
         torque = recording.bushes[foot].torque[:, column]
         prediction = predict(recording, fitted)

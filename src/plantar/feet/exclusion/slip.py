@@ -24,7 +24,7 @@ from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
 from plantar.signals.segments import runs
 
-AFTER = 0.05  # s
+AFTER = 0.05  # s before and behind a lean: a place is computed for a level sole
 # m/s: a speed between soles, or of a turning one, that says so much as one deviation of the IMU's.
 UNREST = 0.0007
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from plantar.contact.deflection import BushState, onto_sole
 from plantar.contact.phases import quick_part
-from plantar.contact.slip_indicator import SLIP_CUTOFF, usual_deviation
+from plantar.contact.slip_indicator import SLIP_CUTOFF, USUAL, usual_deviation
 from plantar.conventions import Array, Mask, cross, rotated
 from plantar.estimation.errors_in_variables import NORMAL
 from plantar.estimation.velocity_drift import fit_drift
@@ -27,9 +27,8 @@ DRIFT_RATE = 50.0  # Hz, enough for the drift
 GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
 LAG = 0.05  # s, in which neither drift nor slide changes much
 SLOPE_TIME = 1.0  # s, in which the drift's slope changes by more than noise
-LEAST_NOISE = 0.0002  # m/s
-LEAST_WANDER = 0.0005  # m/s² in a second's root
-STRESSED = 80  # percent of the samples are accelerated less
+LEAST_NOISE = 0.0002  # m/s: no IMU tells a sole's speed better
+LEAST_WANDER = 0.0005  # m/s² in a second's root: no zero of an accelerometer wanders less
 NEAR = 0.1  # s around a sample whose acceleration counts
 MEDIAN = np.sqrt(2 * np.log(2))  # median length of a plane vector, in deviations of its components
 
@@ -184,7 +183,7 @@ def _deviation(velocity: Array, noise: float, of_drift: Array, strain: Array) ->
     least = np.hypot(max(noise, usual_deviation(speed)), of_drift)
     if not known.any():
         return np.asarray(least)
-    strong = known & (strain > np.percentile(strain[known], STRESSED))
+    strong = known & (strain > np.percentile(strain[known], USUAL))
     if not strong.any():
         return np.asarray(least)
     grows = float(median(((speed / MEDIAN) ** 2 - least**2)[strong] / strain[strong]))

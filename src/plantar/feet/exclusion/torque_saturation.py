@@ -13,7 +13,7 @@ from plantar.robot.model import RobotModel
 SHELLS = 60  # into which the angles from the resting pose are sorted
 BENT = 0.5  # of the first slope: below it for good, the torque has stopped growing
 LEAST_SHELL = np.radians(0.02)  # rad: narrower shells hold noise
-BIN = np.radians(0.25)  # rad
+BIN = np.radians(0.25)  # rad: as closely the resting pose is known
 
 
 def without_torque_saturation(robot: RobotModel, recording: Recording, settings: FeetSettings) -> Recording:

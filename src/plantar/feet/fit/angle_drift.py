@@ -17,6 +17,7 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import effect_of, influences_of
 from plantar.estimation.slow_drift import drift_beside
+from plantar.feet.fit.corrections import NEGLIGIBLE
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.model_columns import model_columns
@@ -25,7 +26,6 @@ from plantar.feet.regression.tangent import Tangent
 
 ROUNDS = 6  # at most
 HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large
-NEGLIGIBLE = 0.1  # of a deviation
 
 
 def beside_drift(

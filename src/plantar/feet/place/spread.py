@@ -11,9 +11,9 @@ from plantar.conventions import SHOWN, Array, Axis
 from plantar.feet.place.place_notes import FAR, FARTHEST, PLACE
 from plantar.feet.regression.axis import AxisFit
 from plantar.robot.model import RobotModel
+from plantar.sensors.load_errors import TURN
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
-GUESSED_TURN = 0.02  # rad: of an IMU whose mount nobody measured, about any axis
 ALIKE = 0.5  # of another foot's height above the robot file's place
 
 
@@ -78,7 +78,7 @@ class PlaceSpread:
         position, turned = robot.uncertainty.bush_position, robot.uncertainty.imu_mount
         for guess in robot.guesses:
             if guess.key == "imu" and turned:
-                turned = max(turned, GUESSED_TURN)
+                turned = max(turned, TURN)
             if guess.key.startswith((f"feet.{foot}.bush", f"feet.{foot}.wrench")):
                 position = max(position, GUESSED if guess.spread is None else guess.spread)
         # Of a force sensor, a force that shows in a torque is like an arm: of the load aside, of the others above.

@@ -20,8 +20,6 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note, Severity
 
-FAR = 3.0  # deviations of the robot file's, beyond which the mount is worth a look
-
 
 def turn_shown(feet: Mapping[str, FittedFoot], found: ImuTurn, mount: float) -> ImuTurn | None:
     """What steps that are fitted show of the turn in all, beside what was `found` and put right before.
@@ -69,7 +67,7 @@ def imu_turn_notes(turn: ImuTurn, mount: float) -> list[Note]:
     """What the IMU is turned by, where angles were put right by the opposite turn."""
     if not any(turn.angles):
         return []
-    far = max(abs(angle) for angle in turn.angles) > FAR * mount
+    far = max(abs(angle) for angle in turn.angles) > SHOWN * mount
     severity: Severity = "warning" if far else "info"
     degrees, std = np.degrees(turn.angles), np.degrees(np.sqrt(np.diag(turn.covariance)))
     told = ", ".join(

@@ -11,6 +11,7 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
+from plantar.estimation.errors_in_variables import FEWEST
 from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
@@ -37,7 +38,6 @@ from plantar.model_selection.data_sets import DataSet, StepColumns
 # file's and of the slide under load, turned or leaning by a degree, as a mount that nobody measured, and crosstalk as
 # the robot file has it unless told.
 PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02, 0.004])
-FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit, or to be scored
 
 
 def blocks_of(
@@ -61,7 +61,7 @@ def blocks_of(
     blocks = []
     for recording in recordings:
         rows, bush = recording.rows(foot), recording.bushes[foot]
-        few = recording.every * recording.used(foot).sum() < FEWEST_SAMPLES
+        few = recording.every * recording.used(foot).sum() < FEWEST
         if few or (fit is not None and recording.name not in fit.offsets):
             continue
         regressor = model_columns(recording, foot, axis, fit)[rows]

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.special import stdtrit
 
 from plantar.conventions import MONTH, NORMAL95, YEAR, Array
-from plantar.fleet.statistics.control_chart import Limits, limits_of, watch
-from plantar.fleet.statistics.trend import FEWEST, Trend, trend_of
+from plantar.fleet.statistics.control_chart import BASELINE, Limits, limits_of, watch
+from plantar.fleet.statistics.trend import Trend, trend_of
 
 Kind = Literal["step", "trend", "outlier"]
 
@@ -22,7 +22,6 @@ SHORTEST: Final = MONTH  # days: in less, a trend and a step are one
 BESIDE: Final = 60.0  # days before and behind a step that its size is taken from
 AGAIN: Final = 2.1 * MONTH  # days within which another trend of the same direction is the same one
 BENDS: Final = 25  # places where a line may begin
-TINY: Final = 1e-300  # for zero in a denominator
 LARGEST_SHARE: Final = 0.2  # of days that may be called one thing, where days are few and alarms many
 
 
@@ -66,7 +65,7 @@ def history_of(time: Array, values: Array, weights: Array, rate: float) -> Histo
         >>> [(change.kind, change.first) for change in history_of(np.arange(60.0), softer, np.ones(60), 0.1).changes]
         [('step', 40)]
     """
-    if len(time) < FEWEST or time[-1] <= time[0]:
+    if len(time) < BASELINE or time[-1] <= time[0]:
         return History((), 0, None)
     a_year = YEAR * (len(time) - 1) / float(time[-1] - time[0])
     share = min(rate / KINDS / a_year, LARGEST_SHARE)
@@ -141,7 +140,7 @@ def _bend(time: Array, values: Array, weights: Array) -> tuple[int, float]:
         ramp = np.maximum(time - time[bend], 0.0)
         ramp -= weights @ ramp / weights.sum()
         level = values - weights @ values / weights.sum()
-        slope = float(weights @ (ramp * level)) / max(float(weights @ ramp**2), TINY)
+        slope = float(weights @ (ramp * level)) / max(float(weights @ ramp**2), np.finfo(float).tiny)
         missed = float(weights @ (level - slope * ramp) ** 2)
         if missed < best[1]:
             best = (int(bend), missed)
@@ -179,7 +178,7 @@ def _trends(
         start = max((first for first, seen in steps if seen < end), default=0)
         own = np.setdiff1d(np.flatnonzero((time > tick - WINDOW) & (time <= tick)), alone)
         own = own[own >= start]
-        if len(own) <= FEWEST or time[own[-1]] - time[own[0]] < 0.9 * SHORTEST:
+        if len(own) <= BASELINE or time[own[-1]] - time[own[0]] < 0.9 * SHORTEST:
             continue
         line = trend_of(time[own], values[own], weights[own])
         if line is not None and line.probability < probability:

@@ -10,18 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import t as student
 
-from plantar.conventions import Array
+from plantar.conventions import ROUNDING, Array
 
 Labels = np.ndarray[tuple[int], np.dtype[np.intp]]
-
-LEVEL: Final = 0.95  # of intervals
-LEAST: Final = 1e-12  # of the mean square, so that values without any deviation of their own can be weighed
 
 
 @dataclass(frozen=True)
@@ -65,7 +62,7 @@ def nested_means(
         >>> round(found.fleet.value, 2), found.fleet.members, round(found.units["a"].value, 2)
         (1.6, 2, 1.1)
     """
-    squares = np.maximum(stds**2, LEAST * float(np.mean(values**2)))
+    squares = np.maximum(stds**2, ROUNDING * float(np.mean(values**2)))
     names = list(dict.fromkeys(units))
     day_of, of_days = _labelled(list(zip(units, days, strict=True)))
     recordings = _between(values, squares, day_of)
@@ -104,7 +101,7 @@ def mean_of(values: Array, variances: Array, between: float) -> Mean:
         weights = 1 / (variances + between)
         variance = float(weights @ (values - value) ** 2 / weights.sum() / freedom)
     std = float(np.sqrt(variance))
-    wide = std * float(student.ppf((1 + LEVEL) / 2, freedom if freedom > 0 else np.inf))
+    wide = std * float(student.ppf(0.975, freedom if freedom > 0 else np.inf))
     return Mean(value, std, freedom if freedom > 0 else np.inf, value - wide, value + wide, len(values))
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from scipy.special import stdtr, stdtrit
 
 from plantar.conventions import MONTH, ROUNDING, Array
-
-FEWEST: Final = 4  # days through which a line is laid: with three, one day decides
+from plantar.fleet.statistics.control_chart import BASELINE
 
 
 @dataclass(frozen=True)
@@ -29,7 +27,7 @@ def trend_of(time: Array, values: Array, weights: Array) -> Trend | None:
 
     weights: (n,), one over the variance of each value up to one factor. None with fewer than four days.
     """
-    if len(time) < FEWEST:
+    if len(time) < BASELINE:
         return None
     months = time / MONTH
     centred = months - weights @ months / weights.sum()

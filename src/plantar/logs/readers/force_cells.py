@@ -15,9 +15,9 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import LogError
+from plantar.robot.schema import LONGEST_SOLE
 
 FEWEST = 3  # cells: two show the moment about one axis only
-FARTHEST = 1.0  # m from the frame: no sole is longer
 # m, of the cells across their longest line: nearer to a line they show no moment about it.
 LEAST_SPREAD = 0.005
 
@@ -39,7 +39,7 @@ def wrench_of_cells(sensor: str, values: Array, places: object, path: Path) -> d
         raise LogError(f"{where} needs the cells' places", path=path, valid=valid) from None
     if at.shape != (values.shape[1], 2) or not np.isfinite(at).all():
         raise LogError(f"{where} has {len(at)} places for {values.shape[1]} cells", path=path, valid=valid)
-    if np.abs(at).max() > FARTHEST:
+    if np.abs(at).max() > LONGEST_SOLE:
         text = f"{where}: a cell lies {np.abs(at).max():.3g} m away; are these millimetres?"
         raise LogError(text, path=path, valid=valid)
     if len(at) < FEWEST or np.linalg.svd(at - at.mean(axis=0), compute_uv=False)[1] < LEAST_SPREAD:

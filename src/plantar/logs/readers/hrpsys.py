@@ -15,8 +15,8 @@ from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
-from plantar.logs.readers.ports import PORT_LIMIT, log_of_ports
-from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
 
@@ -62,7 +62,7 @@ def port_files(path: Path) -> tuple[str, dict[str, Path]]:
     base = path.name.rpartition(".")[0]
     files = (file for file in path.parent.glob("*") if file.is_file())
     beside = sorted(file for file in files if file.name.rpartition(".")[0] == base)
-    return base, {file.suffix.removeprefix("."): file for file in beside[:PORT_LIMIT]}
+    return base, {file.suffix.removeprefix("."): file for file in beside[:COLUMNS]}
 
 
 def is_port_file(path: Path) -> bool:

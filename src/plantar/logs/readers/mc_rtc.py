@@ -23,7 +23,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import port_columns
-from plantar.logs.readers.read_limit import NUMBER, ReadLimit
+from plantar.logs.readers.read_limit import COLUMNS, NUMBER, ReadLimit
 from plantar.logs.readers.streams import Stream, merge
 from plantar.notes import Note
 
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 MAGIC = b"ANN"
 NEWEST = 10  # versions that may be tried
 ENTRY_LIMIT = 4 * 2**20  # bytes of one entry: a sample of a humanoid takes some ten thousand
-WIDTH_LIMIT = 1000  # numbers in one vector
 KEY_LIMIT = 100_000  # signals that may come and go in one file
 BATCH = 512  # entries turned into arrays at a time, or fewer where they are long
 FORCE_VECTOR = 19
@@ -212,7 +211,7 @@ class _Entries:
 
 def _width(value: Any) -> int:
     if isinstance(value, list):
-        return len(value) if len(value) <= WIDTH_LIMIT else 0
+        return len(value) if len(value) <= COLUMNS else 0
     return int(isinstance(value, int | float))
 
 

@@ -20,8 +20,6 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-PORT_LIMIT = 500  # of a recording
-
 
 def joints_for(count: int, robot: RobotModel | None, path: Path, notes: list[Note]) -> Sequence[str]:
     """Names of a joint vector's entries: `columns.joints`, or the URDF's order where the number agrees."""

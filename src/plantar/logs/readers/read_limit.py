@@ -20,7 +20,9 @@ SHARE = (
 SMALL = 2**28  # bytes that any file may unpack to: the numbers of ten minutes at 1 kHz in 55 columns
 RATIO = 100  # bytes out of a file for each of its own beyond that: recordings shrink to a twentieth at best
 COLUMNS = 10_000  # a humanoid with every internal signal of its controller has a few thousand
-NUMBER = 8  # bytes of a float64
+BLOCK = 2**22  # bytes that readers and writers take at a time
+NUMBER = 8
+"""Bytes of a float64."""
 CONTROL_GROUP = Path("/sys/fs/cgroup/memory.max")  # a container may have less than its machine
 
 

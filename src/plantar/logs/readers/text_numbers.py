@@ -9,11 +9,10 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import LogError
-from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.read_limit import BLOCK, ReadLimit
+from plantar.logs.readers.streams import STRAY_STAMPS
 from plantar.notes import Note
 
-BLOCK = 8 * 2**20  # bytes parsed at a time
-BAD_LINES = 0.01  # share of lines of another length before the file is refused
 HEAD = 2**16  # bytes in which decimal commas show
 DECIMAL_COMMA = re.compile(rb"[-+]?\d+,\d+([eE][-+]?\d+)?")
 COMMENT = (b"#", b"%", b"//")
@@ -106,7 +105,7 @@ class _Lines:
         values = np.concatenate(self._blocks)
         if self._bad:
             where = f"line {self._first_bad}" + (f" and {self._bad - 1} more" if self._bad > 1 else "")
-            if self._bad > max(1, BAD_LINES * self._line):
+            if self._bad > max(1, STRAY_STAMPS * self._line):
                 raise LogError(f"{where} do not hold {self._width} numbers", path=self.path)
             text = f"{self.path.name}: {where} left out: not {self._width} numbers"
             notes.append(Note("lines_broken", "warning", text))

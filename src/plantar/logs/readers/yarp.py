@@ -17,8 +17,8 @@ from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
-from plantar.logs.readers.ports import PORT_LIMIT, log_of_ports
-from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
 
@@ -57,7 +57,7 @@ def dumps(root: Path) -> list[Path]:
     """The `data.log` files at most `DEPTH` directories below `root`. LogError when there is none."""
     found: list[Path] = []
     for depth in range(DEPTH):
-        found += sorted(root.glob("*/" * depth + "data.log"))[:PORT_LIMIT]
+        found += sorted(root.glob("*/" * depth + "data.log"))[:COLUMNS]
     if not found:
         valid = "a ROS bag, or YARP dumps with data.log"
         if endings := sorted({"".join(file.suffixes[-2:]) for file in root.iterdir() if file.is_file()}):

@@ -22,7 +22,7 @@ from plantar.signals.thinning import slow_columns
 
 SEARCHED = 0.25  # s: later sensors are no sensors of the same motion
 STEP = 0.05  # s: half of it is a small phase of what is fastest below, and within reach of a refinement
-CUTOFF = 2.0  # Hz
+CUTOFF = 2.0  # Hz: robots move below it, and half a STEP is a small part of its period
 # Of the robot's weight: a force that changes by less shows its sensor's noise, and no lag.
 LEAST_MOVED = 0.003
 LONGEST = 200.0  # s of a log that are searched: a grid of lags holds each sample a hundred times

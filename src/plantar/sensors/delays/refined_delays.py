@@ -13,14 +13,14 @@ from functools import partial
 
 import numpy as np
 
-from plantar.conventions import UNIFORM, Array, Mask
+from plantar.conventions import SHOWN, UNIFORM, Array, Mask
 from plantar.cores import Each
 from plantar.estimation.delays.delay import LONGEST, estimate_delay
 from plantar.estimation.delays.sensor_delays import Balance, estimate_delays
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.sensors.delays.clock_drift import ClockDrift, clock_drift
+from plantar.sensors.delays.clock_drift import SURE, ClockDrift, clock_drift
 from plantar.sensors.delays.delays_by_log import DelaysByLog, delays_by_log
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals
 from plantar.signals.resampling import shifted
@@ -30,8 +30,6 @@ ROUNDS = 6
 # The step from which on what one cannot tell stays untold: else they go back and forth between two answers.
 WAVERING = 3
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
-DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
-SUSPECT = 3.0  # likewise, for steps from elsewhere to be tried, where the difference is not well known
 LEAST_DISTINCT = 0.0015  # s, and by so much
 WELL_KNOWN = 0.003  # s: differences less well known than this are looked for elsewhere as well
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
@@ -146,8 +144,8 @@ def _step(
         variance = np.diag(contrasts @ free.covariance @ contrasts.T)
         spread = np.sqrt(variance + LEAST_STD**2)
         size = np.abs(apart)
-        seem = size > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
-        suspect = bool((size > SUSPECT * spread)[spread >= WELL_KNOWN].any())
+        seem = size > np.maximum(SURE * spread, LEAST_DISTINCT)
+        suspect = bool((size > SHOWN * spread)[spread >= WELL_KNOWN].any())
         differ = np.append(np.full(len(at) - 1, seem[:-1].any()), seem[-1])
         # What is known no better than by what is usual moves nothing.
         told = np.asarray(told & (spread < APART))

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 FILES = (".mcap", ".db3", ".bag", ".active")  # .bag.active: a ROS 1 bag that was never closed
 METADATA = "metadata.yaml"  # that ROS 2 writes beside the parts of one bag
 CLOCKS_APART = 0.1  # s: messages within a robot are received sooner
-NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
+NO_ORIENTATION = -1.0
+"""`orientation_covariance[0]` of an IMU that has none."""
 
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:

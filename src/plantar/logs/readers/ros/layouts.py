@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
+from plantar.logs.readers.read_limit import COLUMNS
 
 Bytes = NDArray[np.uint8]
 Encoding = Literal["cdr", "ros1"]
 
 JOINT_STATE, IMU, WRENCH = "sensor_msgs/JointState", "sensor_msgs/Imu", "geometry_msgs/WrenchStamped"
-NAME_LIMIT = 10_000  # joints in one message
 
 
 class BrokenMessage(ValueError):
@@ -124,7 +124,7 @@ def layout_of(kind: str, encoding: Encoding, data: bytes) -> Layout:
     fields: list[tuple[str, int, int]] = []
     if kind == JOINT_STATE:
         count = cursor.count()
-        if count > NAME_LIMIT:
+        if count > COLUMNS:
             raise BrokenMessage("names more joints than any robot has")
         names = tuple(cursor.text(not ros1) for _ in range(count))
         for field in ("position", "velocity", "effort"):

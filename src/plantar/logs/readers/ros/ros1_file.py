@@ -9,9 +9,9 @@ import struct
 from pathlib import Path
 
 from plantar.errors import LogError
-from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.read_limit import BLOCK, ReadLimit
 from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
-from plantar.logs.readers.ros.scan import BLOCK, MESSAGES, Found, Scan
+from plantar.logs.readers.ros.scan import MESSAGES, Found, Scan
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 

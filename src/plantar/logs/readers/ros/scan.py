@@ -11,7 +11,6 @@ from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Encoding
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
-BLOCK = 4 * 2**20  # bytes read at a time
 MESSAGES = 2**16  # messages of a topic decoded at a time
 READ = {JOINT_STATE, IMU, WRENCH}
 

@@ -8,14 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from plantar.errors import LogError
-from plantar.logs.readers.read_limit import ReadLimit
-from plantar.logs.readers.ros.scan import READ
+from plantar.logs.readers.read_limit import BLOCK, ReadLimit
+from plantar.logs.readers.ros.scan import MESSAGES, READ
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
-BATCH = 2000  # messages decoded at a time, or fewer where they are long
-BATCH_SIZE = 4 * 2**20  # bytes
-MESSAGE_LIMIT = 64 * 2**20  # bytes
+MESSAGE_LIMIT = 64 * 2**20  # bytes of one message: those of sensors have some hundred
 
 
 def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
@@ -77,7 +75,7 @@ def _messages(
         rows: list[tuple[object, object]] = []
         try:
             size = 0
-            while len(rows) < BATCH and size < BATCH_SIZE and (row := cursor.fetchone()) is not None:
+            while len(rows) < MESSAGES and size < BLOCK and (row := cursor.fetchone()) is not None:
                 rows.append(row)
                 size += len(row[1]) if isinstance(row[1], bytes | str) else 0
         except sqlite3.Error as error:

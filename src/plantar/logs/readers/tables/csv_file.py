@@ -22,7 +22,8 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.logs.readers.tables.arrow_lines import ArrowLines
 
-NOWHERE = -1  # the place of a column that is not read
+NOWHERE = -1
+"""The place of a column that is not read."""
 
 # Which of a table's columns are read.
 Choice = Callable[[Sequence[str]], list[str]]

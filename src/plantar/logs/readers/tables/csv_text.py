@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from plantar.errors import LogError
-from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
+from plantar.logs.readers.read_limit import BLOCK, COLUMNS, ReadLimit
 
-BLOCK = 2**20  # bytes of text at a time
 PIECE = 2**23  # bytes of whole lines at a time: few enough to hold, enough for two cores
 LINE_LIMIT = 2**20  # bytes of one line: COLUMNS numbers at full precision need a quarter of it
 MARK = codecs.BOM_UTF8

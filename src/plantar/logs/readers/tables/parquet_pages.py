@@ -13,8 +13,8 @@ from plantar.logs.readers.read_limit import ReadLimit
 HEADER_LIMIT = 2**16  # bytes of a page's header, statistics in it
 DEPTH = 8  # structs inside each other
 
-# Types of the compact protocol.
 TRUE, FALSE, BYTE, I16, I32, I64, DOUBLE, BINARY, LIST, SET, MAP, STRUCT = range(1, 13)
+"""Types of the compact protocol."""
 
 
 class BrokenPage(ValueError):
