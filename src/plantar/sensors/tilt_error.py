@@ -215,7 +215,7 @@ def _tilts_missing(orientation: Array, rates: Array, known: Mask, period: float)
     turned = low_pass(cross(up, shifted(rates, period, late.late)), period, BAND)
     turning = differentiate(low_pass(up, period, BAND), period)
     known = known & np.isfinite(np.column_stack([turned, turning])).all(axis=1)
-    turned, turning = (part[known] - part[known].mean(axis=0) for part in (turned, turning))
+    turned, turning = (each[known] - each[known].mean(axis=0) for each in (turned, turning))
     apart, power = turned - turning, float(np.sum(turning**2))
     if power == 0:
         return 0.0
