@@ -50,6 +50,18 @@ def test_stances_lie_over_each_other_without_their_offsets() -> None:
         assert np.abs(away).max() < 1.0, f"{kind}: offsets would set stances apart by many pixels"
 
 
+def test_k_lies_in_what_was_measured_where_the_load_turns_the_bush_as_well() -> None:
+    """A force beside the bush is no offset, and no angle: the line passed beside all of it."""
+    turned = [
+        replace(track, values=track.values | {"pitch.torque": track.values["pitch.torque"] + 9.0})
+        for track in walk_tracks()
+    ]
+    chart = loop_charts(walk_result(), turned)["left", "pitch"]
+    straight, measured = points(chart, "straight"), points(chart, "measured many")
+    away = measured[:, 1] - np.interp(measured[:, 0], *straight.T)
+    assert np.abs(away).max() < 1.0
+
+
 def test_a_foot_is_drawn_without_the_other() -> None:
     """The other one bends five times as far."""
     other = [

@@ -48,10 +48,9 @@ def _chart(result: FeetResult, tracks: Sequence[Track], axis: Axis) -> Chart | N
     legend = [("measured", "measured"), ("model", "model")]
     slope, name = _straight(result, foot, axis)
     if slope is not None:
-        known, reach = np.isfinite(angle), np.array([x.low, x.high])
-        # K passes through zero, what is nearest to a richer model through the middle of its motions.
-        nearest = name == NEAREST
-        through = (float(angle[known].mean()), float(measured[known].mean())) if nearest else (0.0, 0.0)
+        reach = np.array([x.low, x.high])
+        # Not through zero: a bush that is put right turns by its load as well, beside the angle.
+        through = float(np.nanmean(angle)), float(np.nanmean(measured))
         marks.append(line(x(reach), y(through[1] + 1e-3 * slope * (reach - through[0])), "straight"))
         legend.append((name, "straight"))
     steps = any((row.foot, row.axis) == (foot, axis) for row in result.stances)
