@@ -71,7 +71,7 @@ def said(
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(StanceChanges, "_reversed_joints", lambda _: joints or {})
     monkeypatch.setattr(StanceChanges, "_reversed_components", lambda _: left or {})
-    monkeypatch.setattr(StanceChanges, "exchanged_joints", lambda *_: pair)
+    monkeypatch.setattr(StanceChanges, "misread_joints", lambda *_: {"exchanged": pair} if pair else {})
     monkeypatch.setattr(StanceChanges, "quarter_turn", turned)
     monkeypatch.setattr(standing, "torque_unit", lambda *_: unit)
     found = list(standing.check_balance(None, None))  # type: ignore[arg-type]

@@ -10,6 +10,7 @@ import pytest
 
 from plantar.faults import standing
 from plantar.faults.log_faults import check_log
+from plantar.faults.stance import Stance, stance_of
 from plantar.faults.stance_changes import StanceChanges
 from plantar.faults.standing import check_balance
 from plantar.logs.motion_log import MotionLog
@@ -82,6 +83,33 @@ def test_exchanged_joints_of_a_leg_are_named(sway: MotionLog) -> None:
     (finding,) = [one for one in found(sway.with_columns(exchanged)) if one.fatal]
     assert finding.code == "joint_names"
     assert "'joint.RLEG_JOINT4.position' and 'joint.RLEG_JOINT5.position': exchanged" in finding.text
+
+
+def test_one_ankle_in_degrees_is_named(sway: MotionLog) -> None:
+    ankle = "joint.RLEG_JOINT4.position"
+    (finding,) = check_balance(hrp2.robot(), sway.with_columns({ankle: np.degrees(sway.column(ankle))}))
+    assert (finding.code, finding.fatal) == ("degrees", True)
+    assert f"column '{ankle}': read as degrees, the wrenches balance" in finding.text
+
+
+def test_an_ankle_in_degrees_beside_one_at_zero_may_be_exchanged(
+    sway: MotionLog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Degrees of a joint that hardly bends are as good as zeros: both are told."""
+    robot = hrp2.robot()
+    stance = stance_of(robot, sway)
+    assert stance is not None
+    bent, still = (robot.joint_names.index(f"RLEG_JOINT{joint}") for joint in (4, 5))
+    positions = np.ones_like(stance.positions)
+    positions[:, still] = 0.0
+    monkeypatch.setattr(
+        Stance, "sides", lambda one: Mock(misfit=np.max(one.positions[:, bent]) / 10, lean=0.0)
+    )
+    changes = StanceChanges(replace(stance, positions=positions))
+    assert changes.misread_joints(0.1) == {
+        "read as degrees": "column 'joint.RLEG_JOINT4.position'",
+        "exchanged": "columns 'joint.RLEG_JOINT4.position' and 'joint.RLEG_JOINT5.position'",
+    }
 
 
 def test_a_joint_that_is_not_recorded_is_named_before_what_it_spoils(sway: MotionLog) -> None:
@@ -188,7 +216,7 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
     monkeypatch.setattr(StanceChanges, "_reversed_joints", lambda _: {"column 'joint.ankle.position'": left})
     monkeypatch.setattr(StanceChanges, "_reversed_components", lambda _: {})
-    monkeypatch.setattr(StanceChanges, "exchanged_joints", lambda *_: None)
+    monkeypatch.setattr(StanceChanges, "misread_joints", lambda *_: {})
     monkeypatch.setattr(StanceChanges, "quarter_turn", None)
     (finding,) = check_balance(hrp2.robot(), tilt)
     assert finding.code == "swapped_feet"

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
@@ -143,10 +144,33 @@ def test_an_attitude_is_put_right_as_far_as_robots_sway(hertz: float, left: floa
     contacts = {"left": SimpleNamespace(standing=np.ones(len(time), dtype=bool))}
     felt = np.column_stack([none, none, GRAVITY + none])
     orientation.flags.writeable = False  # as a log's is
-    right = put_right(orientation, felt, bushes, contacts, 0.005)  # type: ignore[arg-type]
+    still = np.zeros((len(time), 3))
+    right = put_right(orientation, still, felt, bushes, contacts, 0.005)  # type: ignore[arg-type]
     inner = slice(600, -600)
     found = 2 * right[inner, 2]
     assert found @ lean[inner] / (lean[inner] @ lean[inner]) == pytest.approx(left, abs=0.04)
+
+
+@pytest.mark.parametrize(("late", "noise", "off"), [(0.0, 0.0, 5e-4), (0.03, 0.0, 5e-4), (0.0, 0.08, 5e-3)])
+def test_a_zero_of_the_accelerometer_is_no_share_of_each_tilt(late: float, noise: float, off: float) -> None:
+    """0.05 m/s² along the vertical go with each tilt as a lean does: half a percent, which a gyroscope, were it late,
+    does not show. One that is noise tells less of it than is believed of the accelerometer."""
+    time, height, zero = np.arange(0.0, 60.0, 0.005), 0.8, 0.05
+    omega = 2 * np.pi * 0.3
+    tilt, none = 0.05 * np.sin(omega * time), np.zeros_like(time)
+    orientation = np.column_stack([np.cos(tilt / 2), none, np.sin(tilt / 2), none])
+    place = -height * np.column_stack([np.sin(tilt), none, np.cos(tilt)])
+    bushes = {"left": SimpleNamespace(sole_position=place)}
+    contacts = {"left": SimpleNamespace(standing=np.ones(len(time), dtype=bool))}
+    world = np.column_stack([none, none, GRAVITY + none])
+    world -= np.gradient(np.gradient(place, 0.005, axis=0), 0.005, axis=0)
+    felt = Rotation.from_quat(orientation, scalar_first=True).inv().apply(world) + [0.0, 0.0, zero]
+    rates = np.column_stack([none, 0.05 * omega * np.cos(omega * (time - late)), none])
+    rates += np.random.default_rng(4).normal(0, noise, rates.shape)
+    right = put_right(orientation, rates, felt, bushes, contacts, 0.005)  # type: ignore[arg-type]
+    inner = slice(600, -600)
+    found = 2 * right[inner, 2]
+    assert found @ tilt[inner] / (tilt[inner] @ tilt[inner]) == pytest.approx(1.0, abs=off)
 
 
 def test_few_samples_of_a_lean_tell_what_all_do() -> None:
@@ -199,7 +223,7 @@ def test_soles_put_an_attitude_right_however_far_it_was_pulled(
         for one, own in ((pulled, [shown]), (log, [shown]), (pulled, []))
     )
     assert (np.std(wrong - known, axis=0) > 5e-4).all()
-    assert (np.std(found - known, axis=0) < 0.005 * np.std(wrong - known, axis=0)).all()
+    assert (np.std(found - known, axis=0) < 0.006 * np.std(wrong - known, axis=0)).all()
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.85])

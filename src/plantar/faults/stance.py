@@ -93,9 +93,9 @@ class Stance:
         size = np.maximum(np.linalg.norm(force, axis=1), 1.0)[:, None]
         return StanceSides(found @ level[:, None] / size[:, None, None], up, force / size)
 
-    def reversed_joint(self, joint: int) -> Stance:
+    def scaled_joint(self, joint: int, scale: float) -> Stance:
         positions = self.positions.copy()
-        positions[:, joint] *= -1
+        positions[:, joint] *= scale
         return replace(self, positions=positions)
 
     def exchanged_joints(self, first: int, second: int) -> Stance:

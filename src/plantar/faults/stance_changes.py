@@ -22,6 +22,8 @@ SHIFTED = 0.005  # of a sole's length: what moves by less may be noise of the fo
 # Between the ground's usual force and the IMU's up: more than zeros of sensors make.
 LEANING = np.radians(3.5)
 QUARTERS = (90, 180, -90)  # deg: how a sensor is mounted wrongly, or its axes named
+AS_DEGREES = 0.3  # rad: degrees that read less are a joint that stands still
+EXCHANGED = "exchanged"
 COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force.z is judged by its own sign
 
 
@@ -111,13 +113,13 @@ class StanceChanges:
         the joint does not explain what is wrong."""
         stance, robot = self.stance, self.stance.robot
         tried = {
-            f"column 'joint.{name}.position'": stance.reversed_joint(k).sides()
+            f"column 'joint.{name}.position'": stance.scaled_joint(k, -1.0).sides()
             for k, name in enumerate(robot.joint_names)
             if name in robot.path_joints and np.any(stance.positions[:, k])
         }
         for first, second in self._mirrored():
             names = (f"'joint.{robot.joint_names[place]}.position'" for place in (first, second))
-            both = stance.reversed_joint(first).reversed_joint(second)
+            both = stance.scaled_joint(first, -1.0).scaled_joint(second, -1.0)
             tried[f"columns {' and '.join(names)}"] = both.sides()
         return {name: trial.misfit for name, trial in tried.items() if trial.lean < self._upright}
 
@@ -159,17 +161,31 @@ class StanceChanges:
             if usual(trial - np.median(trial, axis=0)) < BETTER * moving
         }
 
-    def exchanged_joints(self, best: float) -> str | None:
-        """Neighbours in a leg that, exchanged, explain the misfit far better than the `best` [m] of other changes."""
+    def misread_joints(self, best: float) -> dict[str, str]:
+        """Columns that explain the misfit far better than the `best` [m] of other changes, by how they are misread.
+
+        A joint in degrees, or neighbours in a leg that are exchanged: both do where one of the two stands at zero.
+        """
         stance, robot = self.stance, self.stance.robot
-        left: dict[str, float] = {}
+        degrees, exchanged = dict[str, StanceSides](), dict[str, StanceSides]()
+        column = "'joint.{}.position'".format
         for foot in robot.feet.values():
             path = robot.joints_between(stance.imu.placement, foot.bush)
             leg = [place for place, name in enumerate(robot.joint_names) if name in path]
+            for joint in leg:
+                if np.abs(stance.positions[:, joint]).max() > AS_DEGREES:
+                    trial = stance.scaled_joint(joint, np.pi / 180).sides()
+                    degrees[f"column {column(robot.joint_names[joint])}"] = trial
             for first, second in pairwise(leg):
                 if np.any(stance.positions[:, [first, second]]):
-                    trial = stance.exchanged_joints(first, second).sides()
-                    names = (f"'joint.{robot.joint_names[place]}.position'" for place in (first, second))
-                    left |= {" and ".join(names): trial.misfit} if trial.lean < self._upright else {}
-        pair = min(left, key=left.__getitem__, default=None)
-        return pair if pair is not None and left[pair] < min(NOTABLE, BETTER * best) else None
+                    names = (column(robot.joint_names[place]) for place in (first, second))
+                    exchanged[f"columns {' and '.join(names)}"] = stance.exchanged_joints(
+                        first, second
+                    ).sides()
+        found = dict[str, str]()
+        for tried, what in ((degrees, "read as degrees"), (exchanged, EXCHANGED)):
+            left = {name: trial.misfit for name, trial in tried.items() if trial.lean < self._upright}
+            least = min(left, key=left.__getitem__, default=None)
+            if least is not None and left[least] < min(NOTABLE, BETTER * best):
+                found[what] = least
+        return found

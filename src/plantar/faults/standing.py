@@ -11,6 +11,7 @@ from plantar.faults.stance import stance_of, usual
 from plantar.faults.stance_changes import (
     BETTER,
     CERTAIN_MOMENT_ARM,
+    EXCHANGED,
     FAR_BETTER,
     LEANING,
     NOTABLE,
@@ -106,15 +107,17 @@ def _too_far(changes: StanceChanges) -> Finding | None:
     return Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
 
 
-def _exchanged_joints(changes: StanceChanges) -> Finding | None:
+def _misread_joints(changes: StanceChanges) -> Finding | None:
     if changes.misfit <= CERTAIN_MOMENT_ARM:
         return None
     others = (changes.best_sign, changes.exchanged_feet.misfit, changes.world_axes.misfit)
-    pair = changes.exchanged_joints(min(others))
-    if pair is None:
+    found = changes.misread_joints(min(others))
+    if not found:
         return None
-    text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
-    return Finding("joint_names", f"{text} (check the joints' names and order)", True)
+    ways = ", or ".join(f"{columns}: {how}" for how, columns in found.items())
+    code, check = ("joint_names", "names, order and unit") if EXCHANGED in found else ("degrees", "unit")
+    text = f"{ways}, the wrenches balance gravity far better"
+    return Finding(code, f"{text} (check the joints' {check})", True)
 
 
 def _in_world_axes(changes: StanceChanges) -> Finding | None:
@@ -202,7 +205,7 @@ def _unexplained(changes: StanceChanges) -> Finding | None:
 # Of a misfit, in this order: the first that explains it is told.
 EXPLANATIONS: Final[tuple[Callable[[StanceChanges], Finding | None], ...]] = (
     _too_far,
-    _exchanged_joints,
+    _misread_joints,
     _in_world_axes,
     _exchanged_feet,
     _quarter_turn,

@@ -21,13 +21,15 @@ import numpy as np
 from plantar.contact.deflection import BushState, FootMotion
 from plantar.contact.phases import FootContact
 from plantar.contact.stances import LONGEST_STANCE
-from plantar.conventions import GRAVITY, Array, cross, rotation_from_quaternion
+from plantar.conventions import GRAVITY, Array, Mask, cross, rotation_from_quaternion
 from plantar.faults.gyroscope import SURE
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.orientation import unit_quaternions
+from plantar.signals.gyroscope_delay import gyroscope_delay
+from plantar.signals.orientation import rates_from, unit_quaternions
+from plantar.signals.resampling import shifted
 from plantar.signals.segments import runs
 
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
@@ -41,6 +43,8 @@ DERIVED = 5.0  # Hz: filter of what is differentiated twice
 # Samples of DERIVED's period: differences of such leave the band below TOLD as it is.
 KEPT_PER_PERIOD = 8.0
 PADDING = 2.0  # s that are mirrored at both ends of a stance: as long as a lean answers to
+ACCELEROMETER_ZERO = 0.005  # of gravity, its deviation
+SURELY = 4.0  # of such deviations: more is a scale, and nobody knows whether the accelerometer's or the gyroscope's
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,8 @@ def right_attitude(
         "corrected from the soles that stand still"
     )
     unit = unit_quaternions(orientation)
-    right = put_right(unit, log.linear_acceleration(imu.name), bushes, contacts, log.period)
+    rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
+    right = put_right(unit, rates, acceleration, bushes, contacts, log.period)
     return right, Note("attitude_tilted", "info", text)
 
 
@@ -152,6 +157,7 @@ def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period:
 
 def put_right(
     orientation: Array,
+    rates: Array,
     acceleration: Array,
     bushes: Mapping[str, BushState],
     contacts: Mapping[str, FootContact],
@@ -159,25 +165,64 @@ def put_right(
 ) -> Array:
     """The orientation (N, 4) as the soles that stand have it; unchanged where none stands for LONGEST_STANCE.
 
-    acceleration: proper, in the IMU's frame, (N, 3); bushes: computed with this orientation.
+    rates, acceleration: the gyroscope's and the proper one, in the IMU's frame, (N, 3); bushes: computed with this
+    orientation.
     """
-    from scipy.spatial.transform import Rotation  # costs start-up
-
     lean = np.full((len(orientation), 2), np.nan)
     for run, found, _ in stance_leans(orientation, acceleration, bushes, contacts, period, band=CORRECTED):
         lean[run] = found
-    finite = np.isfinite(orientation).all(axis=1)
     known = np.isfinite(lean).all(axis=1)
     if not known.any():
         return orientation
     # The accelerometer's zero is no lean; it is one for the whole recording.
-    lean = np.where(known[:, None], lean - np.median(lean[known], axis=0), 0.0)
-    back = Rotation.from_rotvec(np.column_stack([lean[:, 1], -lean[:, 0], np.zeros(len(lean))]))
+    right = _without(orientation, np.where(known[:, None], lean - np.median(lean[known], axis=0), 0.0))
+    # Its zero along the vertical is one that goes with each tilt: gyroscopes have none.
+    tilt = _tilt(right, known)
+    return _without(right, -_tilts_missing(right, rates, known, period) * np.where(known[:, None], tilt, 0.0))
+
+
+def _without(orientation: Array, lean: Array) -> Array:
+    """Orientations (N, 4) without what their vertical leans by along the world's x and y, (N, 2) [rad]."""
+    from scipy.spatial.transform import Rotation  # costs start-up
+
+    finite = np.isfinite(orientation).all(axis=1)
+    back = Rotation.from_rotvec(np.column_stack([lean[:, 1], -lean[:, 0], np.zeros(len(lean))])[finite])
     right = orientation.copy()
-    right[finite] = (back[finite] * Rotation.from_quat(orientation[finite], scalar_first=True)).as_quat(
+    right[finite] = (back * Rotation.from_quat(orientation[finite], scalar_first=True)).as_quat(
         scalar_first=True
     )
     return right
+
+
+def _tilt(orientation: Array, known: Mask) -> Array:
+    """How far what points up at rest leans along the world's x and y, (N, 2) [rad], from a usual one."""
+    to_world = rotation_from_quaternion(orientation)
+    up = np.median(to_world[known][:, 2], axis=0)
+    tilt = to_world[:, :2] @ (up / np.linalg.norm(up))
+    return np.asarray(tilt - np.median(tilt[known], axis=0))
+
+
+def _tilts_missing(orientation: Array, rates: Array, known: Mask, period: float) -> float:
+    """The share by which an attitude tilts less than the gyroscope where it is `known`, as far as it is told from none.
+
+    An accelerometer's zero of 0.05 m/s² along the vertical is half a percent of every tilt. A body tilts several times
+    as far as its bushes, so that stiffness is off by as many times the share.
+    """
+    late = gyroscope_delay(rates, rates_from(orientation, period), period)
+    if late is None:
+        return 0.0
+    up = rotation_from_quaternion(orientation)[:, 2, :]
+    turned = low_pass(cross(up, shifted(rates, period, late.late)), period, BAND)
+    turning = differentiate(low_pass(up, period, BAND), period)
+    known = known & np.isfinite(np.column_stack([turned, turning])).all(axis=1)
+    turned, turning = (each[known] - each[known].mean(axis=0) for each in (turned, turning))
+    apart, power = turned - turning, float(np.sum(turning**2))
+    if power == 0:
+        return 0.0
+    share = float(np.sum(apart * turning)) / power
+    left = float(np.sum((apart - share * turning) ** 2))
+    std = np.sqrt(left / power / (2 * BAND * period * known.sum() * AXES))
+    return share / (1 + (std / ACCELEROMETER_ZERO) ** 2) if abs(share) < SURELY * ACCELEROMETER_ZERO else 0.0
 
 
 def enough_of(period: float) -> int:
