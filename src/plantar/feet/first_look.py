@@ -19,6 +19,7 @@ from plantar.logs.inputs import WaitingLogs
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import AccelerometerDelay, accelerometer_delay
+from plantar.sensors.attitude_lag import NO_LAG, AttitudeLag, log_attitude_lag
 from plantar.sensors.delays.refined_delays import residuals_at
 from plantar.sensors.delays.sensor_delay import on_force_cells
 from plantar.sensors.newton_euler import NewtonEulerResidual
@@ -28,15 +29,16 @@ from plantar.signals.gyroscope_delay import GyroscopeDelay, log_gyroscope_delay
 
 @dataclass(frozen=True)
 class FirstLook:
-    """A checked log, how late its gyroscope and accelerometer are, how far its attitude follows the latter, and both
-    sides of Newton's law with all sensors read as recorded; None where nobody asks, vertical force cells leave nothing
-    to ask, or the gyroscope is likely to be read anew.
+    """A checked log, how late its gyroscope and accelerometer are, how far its attitude follows the latter or lags the
+    former, and both sides of Newton's law with all sensors read as recorded; None where nobody asks, vertical force
+    cells leave nothing to ask, or the gyroscope is likely to be read anew.
     """
 
     log: MotionLog
     gyroscope: GyroscopeDelay | None
     accelerometer: AccelerometerDelay
     tilt: TiltError
+    lag: AttitudeLag
     residuals: list[NewtonEulerResidual] | None
 
     def forget_residuals(self) -> None:
@@ -83,12 +85,12 @@ def look_at(robot: RobotModel, timed: bool, log: MotionLog) -> FirstLook:
     late = gyroscope is not None and gyroscope.shown
     asked: list[Callable[[], Any]] = [
         lambda: _as_recorded(robot, log) if timed and not late else None,
-        lambda: (accelerometer_delay(robot, log), _tilt(robot, log)),
+        lambda: (accelerometer_delay(robot, log), _tilt(robot, log), _lag(robot, log)),
     ]
     with ThreadPoolExecutor(len(asked)) as pool:  # of a long log each takes a while
         each = pool.map if len(log) > LONG else map
-        residuals, (accelerometer, tilt) = each(lambda ask: ask(), asked)
-    return FirstLook(log, gyroscope, accelerometer, tilt, residuals)
+        residuals, (accelerometer, tilt, lag) = each(lambda ask: ask(), asked)
+    return FirstLook(log, gyroscope, accelerometer, tilt, lag, residuals)
 
 
 def look_again(robot: RobotModel, timed: bool, look: FirstLook, log: MotionLog) -> FirstLook:
@@ -100,6 +102,10 @@ def look_again(robot: RobotModel, timed: bool, look: FirstLook, log: MotionLog) 
 
 def _tilt(robot: RobotModel, log: MotionLog) -> TiltError:
     return log_tilt_error(log, robot.imu) if robot.imu else NO_TILT_ERROR
+
+
+def _lag(robot: RobotModel, log: MotionLog) -> AttitudeLag:
+    return log_attitude_lag(log, robot.imu) if robot.imu else NO_LAG
 
 
 def _as_recorded(robot: RobotModel, log: MotionLog) -> list[NewtonEulerResidual] | None:

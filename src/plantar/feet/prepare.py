@@ -14,7 +14,7 @@ from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
-from plantar.feet.first_look import FirstLook, look_again, looked_at, over_logs
+from plantar.feet.first_look import FirstLook, look_again, look_at, looked_at, over_logs
 from plantar.feet.fit.vertical_stiffness import Heights, VerticalStiffness, fit_vertical_stiffness, heights_of
 from plantar.feet.interval_width.force_gain import (
     GainError,
@@ -33,6 +33,7 @@ from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import imu_delay, with_imus_on_time
+from plantar.sensors.attitude_lag import NO_LAG, without_lag
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import Fading, fading, fading_notes, slow_filter
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
@@ -205,8 +206,9 @@ def prepare_unseen(
 
 
 def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> tuple[list[FirstLook], float]:
-    """The logs with what the IMU's own filter delays read at the moments of its orientation, and how unsure these are
-    beside the accelerometer's [s]; looked at again where that moves them."""
+    """The logs with what the IMU's own filter delays read at the moments of its orientation, or without an orientation
+    that lags, and how unsure these are beside the accelerometer's [s]; looked at again where that moves them."""
+    looks = _quick(robot, looks, timed)
     before, name = [look.log for look in looks], "" if robot.imu is None else robot.imu.name
     imu = imu_filter([look.gyroscope for look in looks])
     read = with_gyroscopes_on_time(before, name, imu)
@@ -217,6 +219,16 @@ def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> tupl
         return [*looks], unsure
     with over_logs(after) as each:
         return list(each(partial(look_again, robot, timed), looks, after)), unsure
+
+
+def _quick(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> list[FirstLook]:
+    """The logs without an attitude that lags, looked at anew."""
+    lag = sum((look.lag for look in looks), NO_LAG)
+    if robot.imu is None or not lag.believed(sum((look.tilt for look in looks), NO_TILT_ERROR)):
+        return [*looks]
+    logs = without_lag([look.log for look in looks], robot.imu, lag)
+    with over_logs(logs) as each:
+        return list(each(partial(look_at, robot, timed), logs))
 
 
 def _wrench_delay(

@@ -75,6 +75,11 @@ class TiltError:
         return self.product / self.predicted if self.predicted > 0 else 0.0
 
     @property
+    def explained(self) -> float:
+        """Share of the disagreement's square that it explains."""
+        return self.rate * self.product / self.error if self.error > 0 else 0.0
+
+    @property
     def std(self) -> float:
         """Of the rate [1/s], from what it leaves of the disagreement: as many independent values as the band holds."""
         if self.predicted <= 0 or self.duration <= 0:
@@ -89,11 +94,21 @@ class TiltError:
         A gyroscope that is late by τ beside the attitude looks like a tilt error of about g τ/h [1/s]: it is
         corrected in the same way.
         """
-        shown = self.rate * self.product > EXPLAINED * self.error or self.rate > SURE * self.std
+        shown = self.explained > EXPLAINED or self.rate > SURE * self.std
         return self.rate > LEAST_RATE and shown
 
 
 NO_TILT_ERROR = TiltError()
+
+
+def disagreement(orientation: Array, rates: Array, period: float) -> tuple[Array, Array]:
+    """The world's up in the IMU's frame, and how fast it leaves what the gyroscope says [1/s], both (N, 3).
+
+    orientation and rates as of `tilt_error_of`.
+    """
+    up = rotation_from_quaternion(orientation)[:, 2, :]
+    turned = low_pass(cross(rates, up), period, BAND)
+    return up, differentiate(low_pass(up, period, BAND), period) + turned
 
 
 def log_tilt_error(log: MotionLog, imu: Imu) -> TiltError:
@@ -137,14 +152,11 @@ def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period:
 
     orientation: unit quaternions w x y z, IMU to world, (N, 4); rates, proper acceleration: the IMU's, (N, 3).
     """
-    up = rotation_from_quaternion(orientation)[:, 2, :]
-    believed = low_pass(up, period, BAND)
+    up, error = disagreement(orientation, rates, period)
     # World's up in the body: d(up)/dt = -(ω + k (a × up)) × up, a the direction of the acceleration.
     size = np.linalg.norm(acceleration, axis=1, keepdims=True)
     direction = acceleration / np.where(size > 0, size, np.nan)
-    turned = low_pass(cross(rates, up), period, BAND)
     predicted = low_pass(-cross(cross(direction, up), up), period, BAND)
-    error = differentiate(believed, period) + turned
     known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
     if known.sum() * period < LONGEST_STANCE:
         return NO_TILT_ERROR
