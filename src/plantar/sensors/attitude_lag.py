@@ -12,19 +12,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from plantar.contact.stances import LONGEST_STANCE
 from plantar.conventions import Array, cross
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import BAND, SHORTEST_STANCE, TiltError, disagreement
+from plantar.sensors.tilt_error import BAND, TiltError, disagreement
 from plantar.signals.attitude import attitude_from_inertial
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.gyroscope_delay import USUAL
 from plantar.signals.orientation import rates_from, unit_quaternions
 
-EXPLAINED = (
-    0.5  # share of the disagreement that a lag must explain; sound sensors' noise leaves it a tenth at most
-)
+EXPLAINED = 0.5  # share of the disagreement that a lag must explain; with sound sensors it is a tenth at most
 BETTER = (
     0.5  # share of what a tilt error leaves of it that a lag may leave at most; a real one leaves a seventh
 )
@@ -72,7 +71,7 @@ def attitude_lag_of(orientation: Array, rates: Array, period: float) -> Attitude
     change = differentiate(low_pass(rates_from(orientation, period), period, BAND), period)
     predicted = cross(change, up)
     known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
-    if known.sum() * period < SHORTEST_STANCE:
+    if known.sum() * period < LONGEST_STANCE:
         return NO_LAG
     error, predicted = (part[known] - part[known].mean(axis=0) for part in (error, predicted))
     product, whole, apart = (
