@@ -71,8 +71,9 @@ def test_what_motions_tell_is_as_it_is_kept() -> None:
     size = np.array([[1.0], [0.4], [0.01]])
     motions = 0.3 * size * np.random.default_rng(3).standard_normal((3, reach.lines.size)) / reach.alone()
     known = 1e-3 * np.random.default_rng(4).random((2, 2, 2, 2)) + np.eye(2)
+    firm = [reach.of(part, motions) for part in (reach.firm_deflection, reach.firm_rate)]
     told = {
-        "information": information(reach, motions), "late": delay_half_width(reach, motions),
+        "information": information(reach, *firm), "late": delay_half_width(reach, motions),
         "widths": half_widths(reach, motions), "known": half_widths(reach, motions[0], known),
         "vertical": vertical_half_width(reach, motions),
         "bad": {name: badness(reach, motions, name, 0.0) for name in CRITERIA},
