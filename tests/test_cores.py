@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from plantar import cores
-from plantar.cores import over_cores, usable_cores
+from plantar.cores import begun, over_cores, usable_cores
 from plantar.logs.motion_log import MotionLog
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux")
@@ -227,6 +227,53 @@ def test_work_inside_of_work_takes_a_core_that_has_nothing_left(short: int, tmp_
     with two_cores():
         found = over_cores(outer, range(2))
     assert len({*found[1 - short]}) == 2
+
+
+def test_what_is_begun_goes_on_beside_the_block(tmp_path: Path) -> None:
+    """Neither waits for the other to end: each waits for what the other does in its middle."""
+
+    def wait(path: Path) -> None:
+        end = time.monotonic() + 30
+        while not path.exists():
+            assert time.monotonic() < end, path
+            time.sleep(0.01)
+
+    def work() -> int:
+        (tmp_path / "begun").touch()
+        wait(tmp_path / "block")
+        return os.getpid()
+
+    with two_cores(), begun(work) as found:
+        wait(tmp_path / "begun")
+        (tmp_path / "block").touch()
+        assert found() != HERE
+
+
+def test_what_is_begun_fails_where_it_is_asked_for() -> None:
+    def fail() -> int:
+        raise ValueError("no number")
+
+    with two_cores(), begun(fail):
+        pass
+    with two_cores(), begun(fail) as found, pytest.raises(ValueError, match="no number"):
+        found()
+
+
+def test_what_is_begun_is_done_here_where_there_is_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("plantar.cores.usable_cores", lambda: 1)
+    with begun(os.getpid) as found:
+        assert found() == HERE
+
+
+def test_what_nobody_waits_for_is_stopped(tmp_path: Path) -> None:
+    def work() -> None:
+        time.sleep(0.3)
+        (tmp_path / "late").touch()
+
+    with begun(work):
+        pass
+    time.sleep(0.5)
+    assert not (tmp_path / "late").exists()
 
 
 def test_work_that_is_given_cores_shares_none_with_the_work_around_it() -> None:

@@ -89,6 +89,25 @@ def over_cores(
     return [found[place] if place in found else function(*row) for place, row in enumerate(rows)]
 
 
+@contextmanager
+def begun(function: Callable[[], Found]) -> Iterator[Callable[[], Found]]:
+    """A function at work on another core while the block goes on: gives what waits for what it found.
+
+    It must not change anything that is read later. Asked for, it raises what the function raises.
+    """
+    with _idle_cores() as idle:
+        copy = None
+        with suppress(OSError):  # no room for another process
+            copy = _Copy(function, [()], iter([0]), idle) if idle.take() else None
+        if copy is None:
+            yield function
+            return
+        try:
+            yield lambda: (copy.found() or {0: function()})[0]
+        finally:
+            copy.end()
+
+
 class _Idle:
     """How many cores nobody is at work on: bytes in a pipe, which this process and all its copies share."""
 

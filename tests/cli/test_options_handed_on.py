@@ -158,10 +158,11 @@ def test_identify_feet(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     command = importlib.import_module("plantar.cli.identify.feet")
     asked: list[Any] = []
 
-    def open_in_turn(paths: list[Path], robot: str, size: Any, memory: int) -> list[str]:
+    def open_in_turn(paths: list[Path], robot: str, size: Any, memory: int, ahead: Any) -> list[str]:
         asked.extend([robot, memory])
         return [path.stem for path in paths]
 
+    monkeypatch.setattr(command, "read_ahead", lambda paths, memory: None)
     monkeypatch.setattr(command, "robot_of", lambda place: "robot")
     monkeypatch.setattr(command, "open_in_turn", open_in_turn)
     seen = Seen("plantar.feet.prepare", "prepare_all", monkeypatch)

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from plantar.estimation.orthonormal import orthonormal, without
+from plantar.estimation.orthonormal import SlowSpan, orthonormal, without
+from plantar.estimation.slow_drift import drift_basis
+
+PERIOD = 0.025  # s
 
 
 def test_rows_are_left_as_a_fit_of_the_columns_leaves_them() -> None:
@@ -29,3 +33,35 @@ def test_more_columns_stand_beside_those_there() -> None:
     both = np.hstack([first, orthonormal(more, first)])
     np.testing.assert_allclose(both.T @ both, np.eye(6), atol=1e-12)
     np.testing.assert_allclose(without(both, more), 0.0, atol=1e-12)
+
+
+def _time(seconds: float, holes: int) -> np.ndarray:
+    """Times [s] of samples, without some that a fit does not use."""
+    rng, used = np.random.default_rng(holes), np.ones(round(seconds / PERIOD), dtype=bool)
+    for start, length in zip(rng.integers(0, len(used), holes), rng.integers(1, 900, holes), strict=True):
+        used[start : start + length] = False
+    return np.asarray(np.flatnonzero(used) * PERIOD)
+
+
+@pytest.mark.parametrize("seconds", [10.0, 44.0, 355.0, 600.0, 1500.0])
+@pytest.mark.parametrize("holes", [0, 1, 12])
+def test_slow_columns_are_taken_off_as_any_are(seconds: float, holes: int) -> None:
+    time = _time(seconds, holes)
+    basis = drift_basis(time)
+    rows = np.random.default_rng(1).normal(3.0, 1.0, (len(time), 5)) + time[:, None]
+    expected = rows - basis @ np.linalg.lstsq(basis, rows, rcond=None)[0]
+    np.testing.assert_allclose(
+        SlowSpan(basis, time, 20.0).off(rows), expected, atol=1e-10 * np.abs(rows).max()
+    )
+
+
+def test_columns_of_ten_minutes_are_kept_by_stretches() -> None:
+    """Sixty columns of 24,000 samples are not multiplied: the rows that are left after the stretches are a tenth."""
+    time = _time(600.0, 0)
+    span = SlowSpan(drift_basis(time), time, 20.0)
+    assert span.rows < 0.12 * len(time)
+    assert SlowSpan(drift_basis(time[:1760]), time[:1760], 20.0).rows == 1760
+
+
+def test_no_slow_column_is_taken_off_no_rows() -> None:
+    assert SlowSpan(drift_basis(np.zeros(0)), np.zeros(0), 20.0).off(np.zeros((0, 3))).shape == (0, 3)

@@ -9,7 +9,7 @@ import pytest
 
 from biped_robot import make_robot
 from plantar.errors import DataError, LogError, NoRoom, RobotError
-from plantar.logs.inputs import check_names, logs_of, open_in_turn, robot_of
+from plantar.logs.inputs import check_names, logs_of, open_in_turn, read_ahead, robot_of
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 
@@ -91,9 +91,49 @@ def test_logs_read_in_turn_fit_beside_what_is_kept_of_those_before(tmp_path: Pat
     for path in paths:
         path.write_text("time,joint.knee.position\n" + "".join(f"{0.01 * k:g},0\n" for k in range(100)))
     size = open_log(paths[0]).size
-    few = open_in_turn(paths, None, lambda log: log.size // 5, 2 * size)  # type: ignore[arg-type]
+    few = open_in_turn(paths, None, lambda log: log.size // 5, 2 * size, ahead={})  # type: ignore[arg-type]
     assert [log.name for log in few] == ["one", "two", "three"]
     with pytest.raises(NoRoom, match=r"two.csv: does not fit beside the other logs, which leave 800 bytes"):
-        list(open_in_turn(paths, None, lambda log: log.size, size + 800))  # type: ignore[arg-type]
+        list(open_in_turn(paths, None, lambda log: log.size, size + 800, ahead={}))  # type: ignore[arg-type]
     with pytest.raises(NoRoom, match=r"one.csv: holds 100 rows"):
-        list(open_in_turn(paths, None, lambda log: log.size, size - 1))  # type: ignore[arg-type]
+        list(open_in_turn(paths, None, lambda log: log.size, size - 1, ahead={}))  # type: ignore[arg-type]
+
+
+def table(path: Path, joint: str = "knee", rows: int = 100) -> Path:
+    path.write_text(f"time,joint.{joint}.position\n" + "".join(f"{0.01 * k:g},0\n" for k in range(rows)))
+    return path
+
+
+def test_tables_that_are_read_ahead_are_read_no_second_time(tmp_path: Path) -> None:
+    """They come in their turns under the robot's names, and those that cannot be read say so in theirs."""
+    robot = make_robot(tmp_path, joint_names={"renamed": {"left_ankle_roll": "Hals"}})
+    first, broken, last = table(tmp_path / "a.csv", "Hals"), tmp_path / "b.csv", table(tmp_path / "c.csv")
+    broken.write_text("time,joint.knee.position\n0,x\n1,y\n")
+    ahead = read_ahead([first, broken, last])
+    assert {*ahead} == {first, last}
+    for path in (first, last):
+        path.unlink()
+    turns = iter(open_in_turn([first, broken, last], robot, len, ahead=ahead, memory=None))
+    log = next(turns)
+    assert (log.name, [*log.columns]) == ("a", ["joint.left_ankle_roll.position"])
+    with pytest.raises(LogError, match=r"joint\.knee\.position"):
+        next(turns)
+
+
+def test_logs_that_the_robot_file_maps_are_not_taken_from_those_before(tmp_path: Path) -> None:
+    path = table(tmp_path / "one.csv")
+    columns = {"time": "time", "joint.left_ankle_roll.position": "joint.knee.position"}
+    robot = make_robot(tmp_path, columns=columns)
+    found = next(iter(open_in_turn([path], robot, len, ahead=read_ahead([path]), memory=None)))
+    assert "joint.left_ankle_roll.position" in found.columns
+
+
+def test_no_more_is_read_ahead_than_there_is_time_and_room_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paths = [table(tmp_path / f"{name}.csv") for name in "abc"]
+    size = paths[0].stat().st_size
+    monkeypatch.setattr("plantar.logs.inputs.AHEAD", 2 * size)
+    assert [*read_ahead(paths)] == paths[:2]
+    assert not read_ahead(paths, 100)
+    assert not read_ahead([*paths, tmp_path / "none.csv"])

@@ -19,8 +19,7 @@ LITERAL_EDGES = (
         ("results/test_reference.py",),
     ),
     Mutant(
-        "faults/channels.py", "half of the doubt kills an encoder",
-        "turned > SURE * doubt", "turned > SURE / 2 * doubt",
+        "faults/channels.py", "half of the doubt kills an encoder", "turned > SURE * doubt", "turned > SURE / 2 * doubt",
         ("faults/test_edges_of_encoders.py",),
     ),
     Mutant(

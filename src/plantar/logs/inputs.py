@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -15,7 +16,7 @@ import numpy as np
 
 from plantar.errors import DataError, LogError, NoRoom, RobotError
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log
+from plantar.logs.readers import of_robot, open_log, reads_alike
 from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
 from plantar.logs.readers.urdf_names import with_following_joints
 from plantar.logs.stretches import LONGEST
@@ -28,6 +29,7 @@ RobotInput: TypeAlias = "RobotModel | PathInput"
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
 PROBES = 40  # samples of a log that another one may hold as well
+AHEAD = 2**26  # bytes of text: read by the time that what works on logs is imported
 FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
 
 
@@ -75,16 +77,42 @@ def logs_of(logs: LogInputs, robot: RobotModel, longest: float = np.inf) -> Iter
     return (_log_of(log, robot, longest) for log in logs)
 
 
+@dataclass(frozen=True)
+class _AheadLog:
+    """A log that was read before its turn, and before the robot was known."""
+
+    log: MotionLog
+    robot: RobotModel
+
+    def __call__(self) -> MotionLog:
+        return of_robot(self.log, self.robot)
+
+
+def read_ahead(paths: Sequence[Path], memory: int | None = None) -> dict[Path, MotionLog]:
+    """The first few tables in text, before the robot is known; one that cannot be read has its turn later."""
+    if not _bounded(paths, usual_memory() if memory is None else memory):
+        return {}
+    found, left = dict[Path, MotionLog](), AHEAD
+    for path in paths:
+        left -= path.stat().st_size
+        if left < 0:
+            break
+        with suppress(LogError):
+            found[path] = open_log(path, memory=memory)
+    return found
+
+
 def open_in_turn(
     paths: Sequence[Path],
     robot: RobotModel,
     kept: Callable[[MotionLog], int],
     memory: int | None,
+    ahead: Mapping[Path, MotionLog],
 ) -> WaitingLogs:
     """Logs read when their turns come, of long ones what moves most: each must fit in `memory` bytes beside those that
     are `kept` of the ones before.
 
-    If left out, the usual memory. Raises LogError as `open_log`.
+    If left out, the usual memory. ahead: those that were read before. Raises LogError as `open_log`.
     """
     whole = usual_memory() if memory is None else memory
     left = whole
@@ -101,7 +129,11 @@ def open_in_turn(
         left = max(0, left - kept(log))
         return log
 
-    return WaitingLogs([partial(read, path) for path in paths], _bounded(paths, whole))
+    def opener(path: Path) -> Callable[[], MotionLog]:
+        known = path in ahead and reads_alike(path, robot)
+        return _AheadLog(ahead[path], robot) if known else partial(read, path)
+
+    return WaitingLogs([opener(path) for path in paths], _bounded(paths, whole))
 
 
 def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None = None) -> list[MotionLog]:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.orthonormal import orthonormal, without
-from plantar.estimation.slow_drift import drift_basis, drift_beside
+from plantar.estimation.orthonormal import SlowSpan, orthonormal, without
+from plantar.estimation.slow_drift import DRIFT_PERIOD, drift_basis, drift_beside
 from plantar.models import BESIDE, BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_FITTED_RUN, low_pass
 
@@ -103,8 +103,8 @@ class FilteredDataSet:
     Where the foot steps, turns are too quick for that: the state follows the wide-band `path`.
 
     Response and columns come without what drifts slowly, as the IMU's attitude does, differently in each recording: the
-    span of the orthonormal columns `slow`, which is the same as fitting these beside the offset. Where the foot steps,
-    it is what `steps` holds that is taken off instead.
+    span of the columns `slow`, which is the same as fitting these beside the offset. Where the foot steps, it is
+    what `steps` holds that is taken off instead.
     """
 
     label: str
@@ -113,7 +113,7 @@ class FilteredDataSet:
     response: Array
     used: Mask
     cutoff: float
-    slow: Array | None
+    slow: SlowSpan | None
     steps: StepColumns | None = None
     every: int = 1
 
@@ -141,7 +141,7 @@ class FilteredDataSet:
         own, steps = None, None if data_set.steps is None else data_set.steps.thinned(every)
         if drift and steps is None:
             time = np.flatnonzero(used).astype(np.float64) * every * motion.period
-            own = drift_beside(kept[used, 0], drift_basis(time))
+            own = SlowSpan(drift_beside(kept[used, 0], drift_basis(time)), time, DRIFT_PERIOD)
         raw = cls(data_set.label, slow, path, kept[used, 2], used, cutoff, own, steps, every)
         return replace(raw, response=raw.without_nuisance(raw.response))
 
@@ -153,13 +153,13 @@ class FilteredDataSet:
         if self.steps is not None:
             flat = without(self._nuisance, self.steps.centred(flat, self._stance))
         elif self.slow is not None:
-            flat = without(self.slow, flat)
+            flat = self.slow.off(flat)
         return flat.reshape(rows.shape)
 
     @property
     def drift(self) -> Array:
         """Orthonormal columns (n, m) of what drifts slowly; none where the foot steps or nothing is taken to drift."""
-        return np.zeros((len(self.response), 0)) if self.slow is None else self.slow
+        return np.zeros((len(self.response), 0)) if self.slow is None else self.slow.basis
 
     @cached_property
     def _nuisance(self) -> Array:

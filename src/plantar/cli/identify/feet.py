@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -11,10 +12,11 @@ from typer import Option
 from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
+from plantar.cores import begun
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, FeetSettings
 from plantar.files import refuse_file, write_text
 from plantar.logs.freed_memory import keep_freed
-from plantar.logs.inputs import open_in_turn, robot_of
+from plantar.logs.inputs import open_in_turn, read_ahead, robot_of
 
 CUTOFF_HELP = (
     f"Cut-off of the zero-phase low-pass filter on angles and torques, in Hz. If left out: {DEFAULT_CUTOFF:g}, or less "
@@ -46,24 +48,26 @@ def run(
     refuse_file(out)
     keep_freed()
     paths, show = [*logs, *(validate or ())], progress(quiet)
-    from plantar.feet.prepare import prepare_all
-    from plantar.signals.thinning import kept_size
+    with begun(partial(read_ahead, paths, memory)) as ahead:  # while all that works on logs is imported
+        from plantar.feet.prepare import prepare_all
+        from plantar.signals.thinning import kept_size
 
-    known = robot_of(robot)
-    read = open_in_turn(paths, known, kept_size, memory)
+        known = robot_of(robot)
+        read = open_in_turn(paths, known, kept_size, memory, ahead())
     ready = prepare_all(known, read[: len(logs)], read[len(logs) :], settings, show, _get_rest_ready)
     from plantar.cli.identify.feet_tables import print_feet
     from plantar.feet.identify import fit_prepared
     from plantar.report.feet import feet_page
 
     result = fit_prepared(known, ready, show)
+    with begun(partial(feet_page, result)) as page:  # it is drawn while the numbers are saved
 
-    def report(saved: Path) -> Path:
-        path = saved.with_name("report.html")
-        write_text(path, feet_page(result))
-        return path
+        def report(saved: Path) -> Path:
+            path = saved.with_name("report.html")
+            write_text(path, page())
+            return path
 
-    identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
+        identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
 
 
 def _get_rest_ready() -> None:

@@ -90,11 +90,20 @@ def open_log(
             log = reader(path, robot, ReadLimit(path, memory, longest=longest))
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", path=path) from error
-    log = log.without_empty_joints()
+    return of_robot(log.without_empty_joints(), robot)
+
+
+def of_robot(log: MotionLog, robot: RobotModel | None) -> MotionLog:
+    """A log as `open_log` gives it, from one that was read without the robot where `reads_alike`."""
     if robot is None:
         return log
     named = with_urdf_names(log, robot.joint_names_in_logs, robot.joint_names)
     return with_following_joints(named, robot.following_joints)
+
+
+def reads_alike(path: Path, robot: RobotModel) -> bool:
+    """Whether a file is read as it is where no robot is known: the names of joints alone differ then."""
+    return _module(path, robot) == _module(path, None) == FORMATS[".csv"]
 
 
 def _module(path: Path, robot: RobotModel | None) -> str:
