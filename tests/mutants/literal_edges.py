@@ -19,8 +19,8 @@ LITERAL_EDGES = (
         ("results/test_reference.py",),
     ),
     Mutant(
-        "faults/channels.py", "half of the doubt kills an encoder", "turned > SURE * doubt", "turned > SURE / 2 * doubt",
-        ("faults/test_edges_of_encoders.py",),
+        "faults/channels.py", "half of the doubt kills an encoder",
+        "turned > SURE * doubt", "turned > SURE / 2 * doubt", ("faults/test_edges_of_encoders.py",),
     ),
     Mutant(
         "faults/joints/still_joints.py", "a spike in fifty samples is a motion", "MOST = (1.0, 99.0)",

@@ -82,9 +82,8 @@ def attitude_lag_of(orientation: Array, rates: Array, period: float) -> Attitude
 def without_lag(logs: Sequence[MotionLog], imu: Imu, found: AttitudeLag) -> list[MotionLog]:
     """Logs with the direction of gravity from gyroscope and accelerometer instead of an attitude that lags, and a note
     that says so; as they are where one of the sensors, or a sample of it, is missing."""
-    from plantar.signals.attitude import (
-        attitude_from_inertial,  # costs start-up, and hardly any attitude lags
-    )
+    # It costs start-up, and hardly any attitude lags.
+    from plantar.signals.attitude import attitude_from_inertial
 
     text = (
         f"the IMU's orientation is behind its gyroscope as behind a low-pass of {1e3 * found.lag:.0f} ms: not used; "
