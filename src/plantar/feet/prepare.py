@@ -208,7 +208,7 @@ def prepare_unseen(
 def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> tuple[list[FirstLook], float]:
     """The logs with what the IMU's own filter delays read at the moments of its orientation, or without an orientation
     that lags, and how unsure these are beside the accelerometer's [s]; looked at again where that moves them."""
-    looks = _quick(robot, looks, timed)
+    looks = _without_lag(robot, looks, timed)
     before, name = [look.log for look in looks], "" if robot.imu is None else robot.imu.name
     imu = imu_filter([look.gyroscope for look in looks])
     read = with_gyroscopes_on_time(before, name, imu)
@@ -221,7 +221,7 @@ def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> tupl
         return list(each(partial(look_again, robot, timed), looks, after)), unsure
 
 
-def _quick(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> list[FirstLook]:
+def _without_lag(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> list[FirstLook]:
     """The logs without an attitude that lags, looked at anew."""
     lag = sum((look.lag for look in looks), NO_LAG)
     if robot.imu is None or not lag.believed(sum((look.tilt for look in looks), NO_TILT_ERROR)):
