@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from before_gears import before_gears
+from plantar.feet.interval_width.joint_compliance import NAME
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimator import FootEstimator
 from plantar.results.feet import FeetResult
@@ -75,9 +76,7 @@ def test_what_a_batch_fit_leaves_open_widens_intervals(twin: RobotModel, sweep: 
     rows = [
         Parameter("left", "pitch", name, "", 100.0, 10.0, None, None, "usable", "") for name, *_ in values
     ]
-    limits = [
-        Diagnosis("left", "pitch", name, "", {"joint compliance": part}, 1.0, "") for name, part, _ in values
-    ]
+    limits = [Diagnosis("left", "pitch", name, "", {NAME: part}, 1.0, "") for name, part, _ in values]
     models = (AxisModel("left", "pitch", "kelvin_voigt", "", LinearEquivalent(100.0, 10.0)),)
     wide = result(1e-9, parameters=tuple(rows), diagnosis=tuple(limits), models=models)
     known, unsure = (FootEstimator(twin, each).replay(sweep) for each in (result(1e-9), wide))

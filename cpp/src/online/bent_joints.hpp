@@ -1,6 +1,7 @@
 // Joints that bend beyond their encoders, as behind gears: how far that turns a foot which carries something.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -21,6 +22,7 @@ class BentJoints {
   // ground presses with, both in the bush frame; position: of all joints.
   std::array<double, 2> more(const double* up, const std::array<double, 6>& wrench,
                              std::span<const double> position) const noexcept {
+    if (first_ == foot_->path.size()) return {};
     const Vector3 turned = turn(wrench, position), change = cross(up, turned.data());
     const double level = std::sqrt(up[0] * up[0] + up[2] * up[2]), over = 1.0 / std::max(level, 1e-12);
     const double pitch = (up[2] * change[0] - up[0] * change[2]) * over * over;

@@ -9,12 +9,12 @@ import numpy as np
 
 from plantar.contact.deflection import FootPath, foot_motion, path_to
 from plantar.contact.imu_turn import turned
-from plantar.contact.slip_indicator import DRIFT_RATE
 from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.signals.orientation import attitude
 
+RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
 
 
@@ -25,7 +25,7 @@ def height_changes(log: MotionLog, robot: RobotModel, rows: Mask | slice) -> Ite
     Deviations are the robot file's: of each joint's zero between IMU and feet, of the IMU's mount about its three axes,
     and of each bush's place in its two horizontal directions, about which a sole that leans rises and falls.
     """
-    known, stride = robot.uncertainty, max(1, round(1 / (DRIFT_RATE * log.period)))
+    known, stride = robot.uncertainty, max(1, round(1 / (RATE * log.period)))
     orientation, _ = attitude(log, robot.required_imu, [])
     positions, measured = np.asfortranarray(log.positions(robot)[::stride]), orientation[::stride]
     still = np.zeros_like(positions), np.zeros((len(positions), 3))

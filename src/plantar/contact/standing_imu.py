@@ -12,7 +12,6 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.contact.deflection import FootMotion, foot_motion, path_to
-from plantar.contact.phases import SHAKING_BAND
 from plantar.conventions import FORCE, GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -20,6 +19,8 @@ from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import unit_quaternions
 from plantar.signals.resampling import shifted
 
+# Hz: what is differentiated twice has no noise above it; far above what Newton's law is looked at below.
+DERIVED = 20.0
 TURN = 0.01  # rad, for the slope of what the IMU reads
 LEAST_LOAD = 0.3  # of the weight, that the feet carry together: with less the robot hangs or jumps
 
@@ -61,7 +62,7 @@ class StandingImu:
         if turn is not None:
             seen = np.einsum("nij,nfi->nfj", rotation, places.reshape(len(places), -1, 3)) @ turn
             places = np.einsum("nij,nfj->nfi", rotation, seen).reshape(places.shape)
-        places = low_pass(places, self.period, SHAKING_BAND)
+        places = low_pass(places, self.period, DERIVED)
         away = differentiate(differentiate(places, self.period), self.period).reshape(len(places), -1, 3)
         world = -np.einsum("nf,nfi->ni", self.shares, away) + [0.0, 0.0, GRAVITY]
         return np.asarray(np.einsum("nij,ni->nj", rotation, world))

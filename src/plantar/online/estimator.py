@@ -252,11 +252,9 @@ def _unsure(result: FeetResult | None) -> dict[tuple[str, Axis], tuple[float, fl
 
     def share(foot: str, axis: Axis, name: str) -> float:
         row = result.parameter(foot, axis, name)
-        return (
-            abs(row.std / row.value) * math.sqrt(left.get((foot, axis, name), 0.0))
-            if row.std and row.value
-            else 0.0
-        )
+        if not row.std or not row.value:
+            return 0.0
+        return abs(row.std / row.value) * math.sqrt(left.get((foot, axis, name), 0.0))
 
     return {
         (one.foot, one.axis): (share(one.foot, one.axis, "stiffness"), share(one.foot, one.axis, "damping"))

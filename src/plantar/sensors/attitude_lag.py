@@ -12,12 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.contact.stances import LONGEST_STANCE
 from plantar.conventions import Array, cross
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import BAND, TiltError, disagreement
+from plantar.sensors.tilt_error import BAND, TiltError, disagreement, integrals
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.gyroscope_delay import USUAL
 from plantar.signals.orientation import rates_from, unit_quaternions
@@ -68,15 +67,8 @@ def attitude_lag_of(orientation: Array, rates: Array, period: float) -> Attitude
     """From unit quaternions w x y z, IMU to world, (N, 4), and the gyroscope's rates (N, 3) [rad/s]."""
     up, error = disagreement(orientation, rates, period)
     change = differentiate(low_pass(rates_from(orientation, period), period, BAND), period)
-    predicted = cross(change, up)
-    known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
-    if known.sum() * period < LONGEST_STANCE:
-        return NO_LAG
-    error, predicted = (part[known] - part[known].mean(axis=0) for part in (error, predicted))
-    product, whole, apart = (
-        period * float(np.sum(a * b)) for a, b in ((error, predicted), (predicted, predicted), (error, error))
-    )
-    return AttitudeLag(product, whole, apart)
+    found = integrals(error, cross(change, up), period)
+    return NO_LAG if found is None else AttitudeLag(*found[:3])
 
 
 def without_lag(logs: Sequence[MotionLog], imu: Imu, found: AttitudeLag) -> list[MotionLog]:

@@ -157,14 +157,21 @@ def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period:
     size = np.linalg.norm(acceleration, axis=1, keepdims=True)
     direction = acceleration / np.where(size > 0, size, np.nan)
     predicted = low_pass(-cross(cross(direction, up), up), period, BAND)
+    found = integrals(error, predicted, period)
+    return NO_TILT_ERROR if found is None else TiltError(*found)
+
+
+def integrals(error: Array, predicted: Array, period: float) -> tuple[float, float, float, float] | None:
+    """Of a disagreement (N, 3) and what something predicts of it: of their product, of each one's square, and of how
+    long both are known [s]; None where that is no longer than a stance."""
     known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
     if known.sum() * period < LONGEST_STANCE:
-        return NO_TILT_ERROR
+        return None
     error, predicted = (part[known] - part[known].mean(axis=0) for part in (error, predicted))
     product, whole, apart = (
         period * float(np.sum(a * b)) for a, b in ((error, predicted), (predicted, predicted), (error, error))
     )
-    return TiltError(product, whole, apart, period * len(error))
+    return product, whole, apart, period * len(error)
 
 
 def put_right(

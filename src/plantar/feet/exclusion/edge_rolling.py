@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.contact.phases import SHAKING_BAND, joined, widened
+from plantar.contact.phases import joined, widened
 from plantar.contact.polygon import edge_distances
 from plantar.contact.reasons import Reason
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Mask
@@ -30,6 +30,7 @@ from plantar.signals.segments import runs, steps_in
 
 LEAST_LEAN = 0.003  # rad: less hardly disturbs a deflection
 SURE = 6.0  # times the usual change of the excess over NEAR: a lean beyond doubt
+QUICK_CUTOFF = 20.0  # Hz: the common filter of the fit would blur when a lean begins
 BESIDE = 0.3  # of the fit's filter's period, left out beside a lean
 PRESSURE_NOISE = 4.0  # usual deviations of the centre of pressure where it stops
 LEAST_BAND = 0.0007  # m inside of where it stops: still there
@@ -93,7 +94,7 @@ def _flat(
         stiffness, damping, usual = model
         # Of a stiff bush most of a torque's offset is the angle's zero, which moves no edge.
         zero = 0.0 if name in {swing.foot for swing in recording.zeros} else min(usual, largest)
-        bush = filtered(recording.raw[name], recording.period, SHAKING_BAND)
+        bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
         load = np.maximum(bush.force_z, 1.0)
         excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
         outside = (depth < -beyond - (zero / load)[:, None]).any(axis=1)
@@ -117,7 +118,7 @@ def _edges(recording: Recording, foot: str, polygon: Array, margin: float) -> tu
     if recording.stances[foot] is not None:
         nothing = np.zeros((len(recording.time), 0))
         return nothing, nothing, np.zeros(len(nothing), dtype=bool)
-    cop = low_pass(recording.bushes[foot].cop, recording.period, SHAKING_BAND)
+    cop = low_pass(recording.bushes[foot].cop, recording.period, QUICK_CUTOFF)
     depth = edge_distances(cop, polygon)
     inwards = moved_inwards(recording, foot, depth, polygon)
     near = (depth - inwards).min(axis=1) < margin
