@@ -10,11 +10,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pinocchio as pin
-
+from before_gears import before_gears
 from fault_case import FEET, Case, Change, Table
-from plantar.logs.motion_log import wrench_columns
+from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import load_robot
 
 
@@ -166,30 +164,21 @@ def bent_ankles(compliance: float) -> Change:
 
 
 def untold_gears(compliance: float) -> Change:
-    """All joints of the legs read before gears that bend [rad/(N.m)], which nobody says; torques by Pinocchio."""
+    """All joints between the feet and the IMU read before gears that bend [rad/(N.m)], which nobody says."""
 
     def change(case: Case) -> Case:
         with tempfile.TemporaryDirectory() as folder:
             robot = load_robot(case.write(Path(folder))[0])
-        model, data = robot.model, robot.model.createData()
-        feet = [(robot.frame(foot.wrench.placement), foot.wrench) for foot in robot.feet.values()]
-        legs = [joint for foot in FEET for joint in case.legs[foot]]
+        assert robot.imu is not None
+        joints: set[str] = set().union(
+            *(robot.joints_between(foot.bush, robot.imu.placement) for foot in robot.feet.values())
+        )
 
         def each(table: Table) -> Table:
-            angles = np.column_stack([table[f"joint.{joint}.position"] for joint in robot.joint_names])
-            read = [
-                sensor.sign * np.column_stack([table[name] for name in wrench_columns(sensor.name)])
-                for _, sensor in feet
-            ]
-            torques = np.zeros((len(angles), model.nv))
-            for row, own in enumerate(angles):
-                pin.computeJointJacobians(model, data, robot.configuration(own))
-                for ((joint, placement), _), wrenches in zip(feet, read, strict=True):
-                    jacobian = pin.getJointJacobian(model, data, joint, pin.LOCAL)
-                    torques[row] += (placement.inverse().action @ jacobian).T @ wrenches[row]
-            names = {f"joint.{joint}.position": model.idx_vs[model.getJointId(joint)] for joint in legs}
+            columns = {name: values for name, values in table.items() if name != "time"}
+            read = before_gears(robot, MotionLog("walk", table["time"], columns), compliance, sorted(joints))
             return table | {
-                name: table[name] - compliance * torques[:, place] for name, place in names.items()
+                name: read.column(name) for name in (f"joint.{joint}.position" for joint in joints)
             }
 
         return case.with_tables(each)

@@ -90,7 +90,7 @@ MODELS = (
     Fault("trunk +10 kg", "model", trunk_mass(10.0), MODEL),
     Fault("an arm missing", "model", urdf(without_arm), MODEL),
     Fault("ankles bend by 1e-4 rad/(N·m), said", "model", bent_ankles(1e-4), ("joint compliance",)),
-    *(Fault(f"legs' joints bend by {by:.0e} rad/(N·m), unsaid", "model", untold_gears(by), ("bend",))
+    *(Fault(f"joints bend by {by:.0e} rad/(N·m), unsaid", "model", untold_gears(by), ("bend",))
       for by in (5e-5, 1e-4, 2e-4)),
     Fault("shanks 2 cm longer", "model", longer_shanks(0.02), MODEL),
     Fault("left knee's axis mirrored", "model", turned_axis(KNEE, _mirrored, "left"), MODEL),

@@ -146,7 +146,7 @@ def _model(
                 name=f"{joint.name}.gear", type=joint.type, axis=joint.axis, pos=joint.pos
             )
             gear.stiffness[0], gear.damping[0] = 1 / gears, GEAR_DAMPING / gears
-            gear.armature = 0.01 * ROTOR * servo
+            gear.armature = gear.damping[0] * STEP / PARTS  # of light links an explicit step grows without it
     for name in robot.joint_names:
         actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         actuator.set_to_position(kp=servo, kv=SERVO_DAMPING * servo)

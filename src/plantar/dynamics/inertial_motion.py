@@ -84,12 +84,16 @@ def inertial_motion(
     kept: slice,
     encoders_late: float = 0.0,
     gyroscope_late: float = 0.0,
+    bends: Array | None = None,
 ) -> Motion:
     """Motion of root and joints at the samples `kept`; equation: of the robot's floating model.
 
-    encoders_late, gyroscope_late: by which these report late [s].
+    encoders_late, gyroscope_late: by which these report late [s]; bends: how far joints are beyond their encoders, with
+    both derivatives, (3, n, joints).
     """
     joints = _joint_motion(signals, kept, encoders_late)
+    if bends is not None:
+        joints = (joints[0] + bends[0], joints[1] + bends[1], joints[2] + bends[2])
     measured = _measured(signals, kept, gyroscope_late)
     if signals.by_encoders is not None:
         measured[:, :3] += encoders_late * signals.by_encoders[kept]

@@ -8,6 +8,8 @@ from functools import partial
 from math import hypot
 from typing import NamedTuple
 
+import numpy as np
+
 from plantar.conventions import Array, Axis
 from plantar.errors import DataError
 from plantar.feet.coherent_band import coherent_band
@@ -128,14 +130,20 @@ def prepare_checked(
     moments = moments_of(robot, balances, steps, BENDING)
     bending = joint_bending(robot, moments)
     if bending.found:
-        del found
-        return_freed(size)
-        looks = _straight(robot, looks, settings.wrench_delay is None, bending.compliances, delay)
-        delay = _wrench_delay(robot, looks, settings, unsure)
-        for look in looks:
-            look.forget_residuals()
-        done = replace(delay, residuals=())
-        found = _recordings(robot, looks, len(logs), settings, done, progress)
+        bent = looks
+        for last in (False, True):
+            return_freed(size)
+            looks = _straight(robot, bent, settings.wrench_delay is None, bending.compliances, delay)
+            delay = _wrench_delay(robot, looks, settings, unsure)
+            for look in looks:
+                look.forget_residuals()
+            # What bends moves what it is told by: once more.
+            told = replace(delay, residuals=()) if last else delay
+            found = _recordings(robot, looks, len(logs), settings, told, progress)
+            if not last:
+                moments = moments_of(robot, found.moments, steps, BENDING)
+                bending = joint_bending(robot, moments, bending.compliances)
+        del bent
     else:
         moments = moments_of(robot, balances, steps)
     del balances
@@ -250,8 +258,10 @@ def _straight(
     """The logs with their joints put straight, looked at again: joints that bend also seem late, or filtered."""
     if not compliances.any():
         return [*looks]
+    shown = [one.parameters for one in delay.residuals]
+    above = np.mean(shown, axis=0) if shown else None
     with over_logs([look.log for look in looks]) as each:
-        straight = list(each(lambda look: put_straight(robot, look.log, compliances, delay), looks))
+        straight = list(each(lambda look: put_straight(robot, look.log, compliances, delay, above), looks))
         return list(each(partial(look_again, robot, timed), looks, straight))
 
 

@@ -1,8 +1,8 @@
 """Joints that bend where their encoders do not see it: encoders on the motor's side of a gear, legs that give way.
 
-The links turn by compliance·torque beyond what is read, of every joint of the leg, with the torque that the foot's
-wrench makes in it. It counts as the bush's angle: what nothing in the logs tells of it widens the bush's numbers. What
-bends above the URDF's root is not known so simply, and left out.
+The links turn by compliance·torque beyond what is read, of every joint between the IMU and the foot, with the torque
+that the feet's wrenches, the links' weight and their inertia make in it. It counts as the bush's angle: what nothing in
+the logs tells of it widens the bush's numbers.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from plantar.feet.regression.load_torque import torque_of_angle
 from plantar.feet.regression.tangent import Tangent
 from plantar.robot.model import RobotModel
 from plantar.sensors.moments.bent_joints import JointBending
-from plantar.sensors.moments.leg_torques import leg_torques
+from plantar.sensors.moments.joint_torques import torques_along
 from plantar.signals.orientation import attitude
 
 NAME = "joint compliance"
@@ -57,10 +57,7 @@ def _bending(robot: RobotModel, recording: Recording, ways: Array) -> dict[str, 
     [rad], filtered as they are."""
     if NAME not in recording.kept:
         log, positions = recording.log, recording.log.positions(robot)
-        wrenches = np.hstack(
-            [foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()]
-        )
-        torques = np.nan_to_num(leg_torques(robot, positions, wrenches))
+        torques = torques_along(robot, log)
         orientation, rates = attitude(log, robot.required_imu, [])
         still = np.zeros_like(rates)
         # As joints that turn by their torques in a second would turn the bush.

@@ -6,7 +6,7 @@ force sensor, which the horizontal forces show, and shifts the body over the foo
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.sensor_delay import SensorDelay, beside_encoders
-from plantar.sensors.moments.leg_torques import leg_joints, leg_torques
+from plantar.sensors.moments.joint_torques import carrying_joints, leg_joints, torques_along
 from plantar.sensors.moments.moment_fit import MomentFit, Part, is_wrong
 from plantar.sensors.moments.sensor_errors import compliance_columns
 
@@ -25,6 +25,8 @@ BENT = "joints_bend"
 # rad, with the robot's weight at a metre: deviation of what stiff joints seem to bend by. A URDF's legs that are a
 # little too short do as much; 24 simulated robots under wrong URDFs seemed to by no more than this and noise explain.
 USUAL = 0.004
+# What bends accelerates as well, and torques with it: by a tenth as a rule, by a hundredth after these.
+PASSES = 3
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
 
@@ -58,8 +60,10 @@ class JointBending(NamedTuple):
         return cls(np.zeros(joints), np.full((joints, joints), variance))
 
 
-def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
-    """What the moments of a robot's motion show, beside what its file says, of the joints of its legs.
+def joint_bending(robot: RobotModel, fit: MomentFit | None, put_right: Array | None = None) -> JointBending:
+    """What the moments of a robot's motion show, beside what its file says, of the joints that carry it.
+
+    put_right: by which compliances (joints,) [rad/(N.m)] the logs were put straight that the moments are of.
 
     Compliances are as large as each other within their own size, which the moments tell; the robot file's, where that
     is larger.
@@ -67,39 +71,59 @@ def joint_bending(robot: RobotModel, fit: MomentFit | None) -> JointBending:
     told = JointBending.told(robot)
     if fit is None:
         return told
-    columns, legs = compliance_columns(robot), leg_joints(robot)
-    values, count = fit.values[columns], len(legs)
+    groups, columns = carrying_joints(robot), compliance_columns(robot)
+    values, count = fit.values[columns], len(groups)
+    if put_right is not None:
+        values = values + put_right[[joints[0] for joints in groups]]
     load, alike = robot.mass * GRAVITY, np.ones((count, count)) + np.eye(count)
     parts = [Part(one.covariance[columns, columns], one.freedom) for one in fit.parts]
     parts.append(Part((USUAL / load) ** 2 * alike, MOST_FREEDOM))
     covariance = np.sum([one.covariance for one in parts], axis=0)
-    weights = np.linalg.solve(covariance, np.ones(count))
-    weights /= weights.sum()
-    mean, std = float(weights @ values), float(np.sqrt(weights @ covariance @ weights))
+    together = _Together.of(values, parts, np.ones(count))
+    # Or the legs' joints alone, and the trunk's are stiff.
+    legs = _Together.of(values, parts, (np.arange(count) < len(leg_joints(robot))).astype(float))
 
     def unlikely(size: float) -> float:
         total = covariance + size**2 * alike
         return float(np.linalg.slogdet(total)[1] + values @ np.linalg.solve(total, values))
 
     size = robot.uncertainty.joint_compliance
-    # No joint bends against its load. What one that hardly carries seems to do is mostly another error, and no
-    # objection where joints differ by less than they bend together.
-    together = (mean / std) ** 2
-    differ = float(values @ np.linalg.solve(covariance, values)) - together - (count - 1)
-    against = bool((values < -SHOWN * np.sqrt(np.diag(covariance))).any())
-    gives_way = mean > 0 and (not against or differ < together)
-    # Of all joints together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
-    own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in parts]
-    if gives_way and is_wrong(np.array([mean]), own, [0]):
+    if together.gives_way or legs.gives_way:
         size = max(size, min(SIZES / load, key=unlikely))
     if not size:
-        return told._replace(mean=mean, std=std)
+        return told._replace(mean=together.mean, std=together.std)
     gain = np.linalg.solve(covariance + size**2 * alike, size**2 * alike)
     spread = np.zeros((len(told.compliances), count))
-    for place, joints in enumerate(legs):
+    for place, joints in enumerate(groups):
         spread[joints, place] = 1.0
     left = size**2 * alike @ (np.eye(count) - gain)
-    return JointBending(spread @ (values @ gain), spread @ left @ spread.T, mean, std)
+    return JointBending(spread @ (values @ gain), spread @ left @ spread.T, together.mean, together.std)
+
+
+class _Together(NamedTuple):
+    """Mean compliance of joints that bend alike [rad/(N.m)], its deviation, and whether they bend beyond doubt."""
+
+    mean: float
+    std: float
+    gives_way: bool
+
+    @classmethod
+    def of(cls, values: Array, parts: Sequence[Part], alike: Array) -> _Together:
+        """By the joints' own `values` (k,) and the `parts` of their covariance; alike (k,): 1 of each joint that may
+        bend, 0 of those that are stiff."""
+        covariance = np.sum([one.covariance for one in parts], axis=0)
+        weights = np.linalg.solve(covariance, alike)
+        weights /= weights @ alike
+        mean, std = float(weights @ values), float(np.sqrt(weights @ covariance @ weights))
+        # No joint bends against its load. What one that hardly carries seems to do is mostly another error, and no
+        # objection where joints differ by less than they bend together.
+        certain = (mean / std) ** 2
+        differ = float(values @ np.linalg.solve(covariance, values)) - certain - (len(values) - 1)
+        against = bool((values < -SHOWN * np.sqrt(np.diag(covariance))).any())
+        # Of all together: an encoder that slips, or is coarse, makes some seem to bend and others to push.
+        own = [Part(np.array([[weights @ one.covariance @ weights]]), one.freedom) for one in parts]
+        bends = mean > 0 and (not against or differ < certain)
+        return cls(mean, std, bends and is_wrong(np.array([mean]), own, [0]))
 
 
 def joint_bending_notes(robot: RobotModel, bending: JointBending) -> list[Note]:
@@ -107,15 +131,14 @@ def joint_bending_notes(robot: RobotModel, bending: JointBending) -> list[Note]:
     if not bending.found:
         return []
     stds = np.sqrt(np.diag(bending.covariance))
-    legs = [joints[0] for joints in leg_joints(robot)]
     each = ", ".join(
         f"{robot.joint_names[joint]} {1e3 * bending.compliances[joint]:.3f} ± {1e3 * NORMAL95 * stds[joint]:.3f}"
-        for joint in legs
+        for joint in (joints[0] for joints in carrying_joints(robot))
     )
     text = (
         f"the moments of the robot's motion show joints that bend beyond their encoders, as behind gears: {each} "
-        "mrad/(N·m) (95 %; the other legs' likewise). Angles are put right by it, and what it leaves open widens K and "
-        "C (encoders on the links' side of the gears see all of it)"
+        "mrad/(N·m) (95 %; of the other legs' likewise). Angles are put right by it, and what it leaves open widens K "
+        "and C (encoders on the links' side of the gears see all of it)"
     )
     return [Note(BENT, "info", text)]
 
@@ -125,15 +148,20 @@ def stored_bends(robot: RobotModel, compliances: Mapping[str, float]) -> Array:
     return np.array([compliances.get(joint, 0.0) for joint in robot.joint_names])
 
 
-def put_straight(robot: RobotModel, log: MotionLog, compliances: Array, delay: SensorDelay) -> MotionLog:
+def put_straight(
+    robot: RobotModel,
+    log: MotionLog,
+    compliances: Array,
+    delay: SensorDelay,
+    parameters: Array | None = None,
+) -> MotionLog:
     """The log with joints where their links are, which bend by `compliances` (joints,) beyond their encoders; with
-    `delay` its sensors were read."""
+    `delay` its sensors were read. parameters: as of `torques_along`."""
     positions, at_once = log.positions(robot), beside_encoders(robot, log, delay)
-    wrenches = np.hstack([
-        foot.wrench.sign * at_once.wrench(foot.wrench.name) for foot in robot.feet.values()
-    ])  # fmt: skip
-    bent = positions + compliances * np.nan_to_num(leg_torques(robot, positions, wrenches))
-    columns = {
-        f"joint.{robot.joint_names[place]}.position": bent[:, place] for place in np.flatnonzero(compliances)
-    }
+    names = [f"joint.{robot.joint_names[place]}.position" for place in np.flatnonzero(compliances)]
+    bent = positions
+    for _ in range(PASSES):
+        turned = dict(zip(names, bent[:, compliances != 0].T, strict=True))
+        bent = positions + compliances * torques_along(robot, at_once.with_columns(turned), parameters)
+    columns = dict(zip(names, bent[:, compliances != 0].T, strict=True))
     return log.with_columns({name: values for name, values in columns.items() if log.has(name)})

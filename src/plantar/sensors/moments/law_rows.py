@@ -16,8 +16,8 @@ from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import RobotModel
 from plantar.sensors.model_errors import imu_turn_slopes, link_errors
+from plantar.sensors.moments.joint_torques import carrying_joints
 from plantar.sensors.moments.law_bending import bending_torques, by_bending
-from plantar.sensors.moments.leg_torques import leg_joints
 from plantar.sensors.moments.sensor_errors import bush_directions, sensor_errors
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
@@ -65,10 +65,10 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
     zeros = [-channel for one in read for channel in one.transfer.transpose(2, 0, 1)]
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     by_torques = np.sum([one.by_torques for one in read], axis=0)
-    legs = leg_joints(robot)
-    by_bends = np.zeros((len(legs), len(motion.positions), 6))
+    groups = carrying_joints(robot)
+    by_bends = np.zeros((len(groups), len(motion.positions), 6))
     if torques is not None:
-        by_bends -= by_bending(robot, residual, motion, legs, torques)
+        by_bends -= by_bending(robot, residual, groups, torques)
     by_motion = [*-by_mount, *by_bends, *residual.rates, residual.by_encoders, -by_gyroscope]
     # Some at a time and in single precision: all together would be the largest array of any log.
     errors = link_errors(robot)
@@ -90,7 +90,7 @@ def law_rows(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> I
         # white, and small below BAND.
         noisy = np.zeros(len(signals), dtype=bool)
         noisy[:of_sensors] = noisy[-len(by_links) - len(zeros) : -len(zeros)] = True
-        noisy[of_sensors + len(by_mount) :][: len(legs)] = True
+        noisy[of_sensors + len(by_mount) :][: len(groups)] = True
         slow = np.empty((len(missing), len(signals)))
         noise = np.zeros((2, 0 if steps else len(missing), len(signals)), dtype=np.float32)
         for first in range(0, len(signals), TOGETHER):

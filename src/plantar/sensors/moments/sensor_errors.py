@@ -14,7 +14,7 @@ import pinocchio as pin
 from plantar.conventions import GRAVITY, Array
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.moments.leg_torques import leg_joints
+from plantar.sensors.moments.joint_torques import carrying_joints
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 ANOTHER_UNIT = 10.0  # share: likewise, where it may be kgf.m for N.m
@@ -37,14 +37,14 @@ def prior_deviations(robot: RobotModel, gains: float = LOOSE, bending: float = B
     feet = len(robot.feet)
     of_feet = np.tile(sensor_errors(robot)[1], feet)
     late = [*np.full(feet + 2, LATE), *np.full(2, LATE_TORQUES)]
-    bends = np.full(len(leg_joints(robot)), bending / (robot.mass * GRAVITY))
+    bends = np.full(len(carrying_joints(robot)), bending / (robot.mass * GRAVITY))
     return np.concatenate([np.full(2 * feet, gains), of_feet, np.full(3, MOUNT), bends, late])
 
 
 def compliance_columns(robot: RobotModel) -> slice:
-    """The columns of the joints' compliances, one for each of `leg_joints`."""
+    """The columns of the joints' compliances, one for each of `carrying_joints`."""
     start = len(robot.feet) * (2 + len(sensor_errors(robot)[1])) + 3  # behind gains, sensors, the IMU's turn
-    return slice(start, start + len(leg_joints(robot)))
+    return slice(start, start + len(carrying_joints(robot)))
 
 
 def turn_columns(robot: RobotModel) -> dict[str, slice]:
