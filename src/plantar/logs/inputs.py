@@ -29,7 +29,9 @@ RobotInput: TypeAlias = "RobotModel | PathInput"
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
 PROBES = 40  # samples of a log that another one may hold as well
-OVERLAP = 0.1  # share of a log that another may hold too: told twice, it narrows intervals by a twentieth at most
+OVERLAP = (
+    0.1  # share of a log that another may hold too: told twice, it narrows intervals by a twentieth at most
+)
 BEGUN_ALIKE = 0.5  # the same of logs that begin alike, as simulations without noise do before they part
 AHEAD = 2**26  # bytes of text: read by the time that what works on logs is imported
 FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
