@@ -129,15 +129,19 @@ def test_scores_stand_under_their_heads() -> None:
 
 def test_a_joints_terms_and_scores_stand_under_their_heads() -> None:
     term = JointParameter("knee", "viscous", "N.m.s/rad", 3.0, 0.1, (2.8, 3.2), "usable", "narrow")
+    dust = JointParameter(
+        "hip", "viscous", "N.m.s/rad", 1.557e-13, 1e-13, (-2e-14, 3.3e-13), "usable", "exact"
+    )
     score = DynamicsScore(
         "cross", "squat", "N.m", 0.3, 0.4, 9.0, zero_mean_abs=5.0, cad_rms_error=2.0, samples=10,
         relative_error_percent=7.5, joint="knee",
     )  # fmt: skip
     out = io.StringIO()
-    result = SimpleNamespace(robot="arm", parameters=(term,), validation=(score,), notes=())
+    result = SimpleNamespace(robot="arm", parameters=(term, dust), validation=(score,), notes=())
     print_joints(Console(file=out, width=200), result)  # type: ignore[arg-type]
     lines = [line.split() for line in out.getvalue().splitlines()]
     assert ["knee", "viscous", "3.000", "N.m.s/rad", "2.800", "to", "3.200", "usable", "narrow"] in lines
+    assert ["hip", "viscous", "0", "N.m.s/rad", "0", "to", "0", "usable", "exact"] in lines
     assert ["squat", "knee", "N.m", "0.400", "2.00", "0.300", "5.00", "7.50"] in lines
 
 

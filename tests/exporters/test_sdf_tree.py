@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from export_robots import write_urdf
+from plantar.errors import ExportError
 from plantar.exporters.sdf.from_urdf import sdf_from_urdf
 from plantar.exporters.sdf.tree import SdfTree, pose_of
 from plantar.notes import Notes
@@ -50,6 +51,18 @@ def test_of_a_robot_beside_another_the_first_is_extended(tmp_path: Path) -> None
         SDF.format(shape="<sphere/>").replace("</sdf>", f"<model{other.format(shape='<sphere/>')}</sdf>")
     )
     assert SdfTree.load(path, ("ankle",)).model.get("name") == "arm"
+
+
+@pytest.mark.parametrize(
+    "inside", ["", "<world><include><uri>arm</uri></include></world>", "<model name='arm'/>"]
+)
+def test_a_file_without_links_of_its_own_says_what_would_be_valid(tmp_path: Path, inside: str) -> None:
+    path = tmp_path / "none.sdf"
+    path.write_text(f'<sdf version="1.9">{inside}</sdf>')
+    with pytest.raises(
+        ExportError, match=r"no model with the link 'ankle' \(valid: a <model> with the robot's"
+    ):
+        SdfTree.load(path, ("ankle",))
 
 
 @pytest.mark.parametrize(

@@ -162,7 +162,7 @@ def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
     found = [finding for finding in check_log(robot, cells) if "wrench.left" in finding.text]
     assert [finding.code for finding in found] == ["vertical_only"]
     broken = cells.with_columns({"wrench.left.torque.z": log.column("wrench.left.torque.z")})
-    assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_channel"]
+    assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_force"]
 
 
 def losing(log: MotionLog, sensor: str, length: int, every: int) -> MotionLog:

@@ -57,6 +57,8 @@ def test_zeros_under_load_are_told_of_their_own_column(
         assert finding.code == DEAD_BAND
         assert not finding.fatal
         assert f"column '{column}':" in finding.text
+    (force,) = check_dead_bands(robot, read_as(log, reading, "wrench.left.force.y"))
+    assert "column 'wrench.left.force.y':" in force.text
     (both,) = check_dead_bands(robot, read_as(log, reading))
     assert "columns 'wrench.left.torque.x', 'wrench.left.torque.y':" in both.text
 

@@ -177,7 +177,7 @@ def test_a_joint_reversed_is_certain_where_hardly_a_tenth_is_left(
 
 @pytest.mark.parametrize(
     ("misfit", "exchanged", "told"),
-    [(0.015, 0.046, True), (0.015, 0.049, False), (0.0061, 0.01, True), (0.0059, 0.01, False)],
+    [(0.019, 0.058, True), (0.019, 0.063, False), (0.0182, 0.01, True), (0.0178, 0.01, False)],
 )
 def test_feet_that_are_swapped_in_a_small_sway(
     monkeypatch: pytest.MonkeyPatch, misfit: float, exchanged: float, told: bool
@@ -261,14 +261,14 @@ def test_feet_that_are_swapped_in_a_small_sway_whatever_else_would_undo_what_is_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(Stub, "exchanged_wrenches", lambda _: Stub(0.011, moves=0.9))
-    assert said(monkeypatch, Stub(0.012, moves=0.9), {"column 'a'": 0.001}) is None  # what moves stays
+    assert said(monkeypatch, Stub(0.019, moves=0.9), {"column 'a'": 0.001}) is None  # what moves stays
     monkeypatch.setattr(Stub, "exchanged_wrenches", lambda _: Stub(0.011, moves=0.1))
-    found = said(monkeypatch, Stub(0.012, moves=0.9), {"column 'a'": 0.001})
+    found = said(monkeypatch, Stub(0.019, moves=0.9), {"column 'a'": 0.001})
     assert found is not None
     assert (found.code, "column 'a' is reversed" in found.text) == ("swapped_feet", True)
 
 
-@pytest.mark.parametrize(("misfit", "told"), [(0.0042, False), (0.0045, False), (0.0061, True)])
+@pytest.mark.parametrize(("misfit", "told"), [(0.012, False), (0.0175, False), (0.0185, True)])
 def test_what_moves_is_measured_by_the_soles(
     monkeypatch: pytest.MonkeyPatch, misfit: float, told: bool
 ) -> None:

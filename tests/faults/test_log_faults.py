@@ -116,8 +116,8 @@ FAULTS: dict[str, tuple[Fault, str, str]] = {
     "gyroscope dead": (constant("imu.chest.angular_velocity.y"), "dead_channel", "angular_velocity.y"),
     "gyroscope's axis reversed": (scaled(GYROSCOPE[1:2], -1.0), "sign", "angular_velocity.y"),
     "IMU's orientation leans": (leaning_imu, "force_leans", "leans"),
-    "torque dead": (constant("wrench.left.torque.y"), "dead_channel", "wrench.left.torque.y"),
-    "force dead": (constant("wrench.right.force.z"), "dead_channel", "wrench.right.force.z"),
+    "torque dead": (constant("wrench.left.torque.y"), "dead_force", "wrench.left.torque.y"),
+    "force dead": (constant("wrench.right.force.z"), "dead_force", "wrench.right.force.z"),
     "time in milliseconds": (milliseconds, "time_unit", "'time'"),
     "time in gigaseconds": (
         lambda log: MotionLog(log.name, log.time * 1e-9, log.columns),
@@ -225,7 +225,7 @@ def test_a_coarse_sensor_that_is_hardly_loaded_is_not_dead(robot: RobotModel, lo
     coarse = {f"wrench.left.torque.{axis}": np.round(values) for axis, values in quiet.items()}
     assert check_log(robot, constant("wrench.left.torque.x")(log.with_columns(coarse))) == []
     found = check_log(robot, constant("wrench.left.torque.x")(log))
-    assert "dead_channel" in {finding.code for finding in found}
+    assert "dead_force" in {finding.code for finding in found}
 
 
 def test_a_joint_that_goes_from_limit_to_limit_in_degrees_is_told(robot: RobotModel, log: MotionLog) -> None:

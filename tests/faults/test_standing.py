@@ -310,12 +310,12 @@ def test_a_wrench_that_stops_is_one_finding(sway: MotionLog) -> None:
         columns = {name: sway.column(name).copy() for name in parts}
         for values in columns.values():
             values[first:] = values[first]
-        codes = ("stuck_channel", "dead_channel")
+        codes = ("stuck_channel", "dead_channel", "dead_force")
         (finding,) = [one for one in found(sway.with_columns(columns)) if one.code in codes]
         assert finding.text.startswith("columns 'wrench.right_foot.*'")
         assert said in finding.text
     some = {name: values for name, values in columns.items() if name.endswith(("torque.x", "torque.y"))}
-    (finding,) = [one for one in found(sway.with_columns(some)) if one.code == "dead_channel"]
+    (finding,) = [one for one in found(sway.with_columns(some)) if one.code == "dead_force"]
     assert "'wrench.right_foot.torque.x', 'wrench.right_foot.torque.y'" in finding.text
 
 

@@ -58,10 +58,19 @@ def test_one_recording_with_other_columns_is_refused_where_force_sensors_read_th
     check_names([recording("plan", extra=SIGNALS["a"]), recording("the same plan")])
 
 
-def test_recordings_that_overlap_by_more_than_half_of_the_shorter_are_one() -> None:
-    check_names([recording("one", slice(0, 400)), recording("two", slice(250, 600))])
-    with pytest.raises(DataError, match="hold the same recording, or most of one"):
-        check_names([recording("one", slice(0, 400)), recording("two", slice(150, 600))])
+@pytest.mark.parametrize("first", [150, 250, 340])
+def test_recordings_that_overlap_by_more_than_a_tenth_of_the_shorter_are_one(first: int) -> None:
+    for later in (0.0, 1e9):
+        with pytest.raises(DataError, match="hold the same recording, or a part of one"):
+            check_names([recording("one", slice(0, 400)), recording("two", slice(first, 600), later)])
+
+
+def test_simulations_without_noise_may_begin_alike() -> None:
+    one = recording("one")
+    apart = {name: np.where(np.arange(600) < 240, own, own + 1.0) for name, own in SIGNALS.items()}
+    check_names([one, recording("two", **apart)])
+    with pytest.raises(DataError, match="hold the same recording, or a part of one"):
+        check_names([one, recording("two", slice(5, 600), **apart)])
 
 
 def test_recordings_that_have_little_in_common_are_two() -> None:

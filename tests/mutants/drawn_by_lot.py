@@ -230,8 +230,8 @@ DRAWN_BY_LOT = (
     Mutant(
         "cli/identify/dynamics_tables.py",
         "the lower end twice",
-        '{number(row.interval95[0])} to {number(row.interval95[1])}", row.verdict',
-        '{number(row.interval95[0])} to {number(row.interval95[0])}", row.verdict',
+        "for end in row.interval95)",
+        "for end in 2 * row.interval95[:1])",
     ),
     Mutant(
         "exporters/job.py",

@@ -11,7 +11,8 @@ from biped import record, sway
 from plantar.errors import DataError
 from plantar.notes import Note
 from plantar.online.replay import IDENTIFY
-from plantar.online.verdicts import AGAIN, judged, log_notes
+from plantar.online.verdicts import AGAIN, judged, log_notes, result_notes
+from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 
@@ -49,3 +50,20 @@ def test_a_log_is_checked_as_for_a_batch_fit(robot: RobotModel) -> None:
     degrees = log.with_columns({column: np.degrees(log.column(column)) for column in columns})
     with pytest.raises(DataError, match="degrees"):
         log_notes(robot, degrees)
+
+
+def test_what_a_batch_result_says_of_the_orientation_holds_here_too() -> None:
+    """The estimator goes by the orientation that the batch fit put right, or did without."""
+    said = (
+        Note("attitude_late", "warning", "sway: behind a low-pass of 200 ms"),
+        Note("attitude_tilted", "info", "sway: follows its accelerometer"),
+        Note("attitude_tilted", "info", "arms: follows its accelerometer"),
+        Note("orientation_late", "warning", "sway: 200 ms behind the accelerometer"),
+        Note("spikes", "warning", "sway: one sample bridged"),
+    )
+    notes = result_notes(FeetResult("biped", (), {}, "kelvin_voigt", (), (), (), (), said))
+    assert sorted(note.code for note in notes) == ["attitude_late", "attitude_tilted", "orientation_late"]
+    assert all(note.severity == "warning" and "sway: " in note.text for note in notes)
+    for note in notes:
+        assert judged(ROWS, [note], identified=True)[0].verdict == "weak"
+    assert result_notes(None) == ()

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from biped import record, sines, sway
 from biped_robot import AS_USUAL, make_robot
+from plantar.feet.assess.data_faults import UNMENDED
+from plantar.feet.first_look import look_at
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog, imu_columns
@@ -21,6 +24,7 @@ from plantar.sensors.accelerometer_delay import (
     device_delay,
     filter_delay,
     imu_delay,
+    orientation_notes,
     with_imus_on_time,
 )
 from plantar.sensors.imu_filter import ImuFilter
@@ -235,3 +239,17 @@ def test_an_orientation_that_follows_the_accelerometer_makes_it_late_for_nothing
 @pytest.mark.parametrize(("late", "moved"), [(0.0099, True), (0.0101, False), (-0.004, False)])
 def test_only_a_filter_s_delay_is_undone(late: float, moved: bool) -> None:
     assert (filter_delay((late, 0.0001), gyroscope=None)[0] != 0.0) is moved
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.02, 0.2])
+def test_an_orientation_that_lags_is_named_where_no_gyroscope_tells(robot: RobotModel, lag: float) -> None:
+    kept = float(np.exp(-SWAY.period / lag)) if lag else 0.0
+    columns = dict(SWAY.columns)
+    for name in imu_columns("chest", "orientation"):
+        own = SWAY.columns[name]
+        columns[name] = lfilter([1 - kept], [1, -kept], own, zi=kept * own[:1])[0]
+    lagging = replace(SWAY, columns=columns)
+    blind = lagging.without(imu_columns("chest", "angular_velocity"))
+    assert orientation_notes(lagging, "chest", accelerometer_delay(robot, lagging)) == []
+    notes = look_at(robot, False, blind).log.notes
+    assert [note.code for note in notes if note.code in UNMENDED] == (["orientation_late"] if lag else [])

@@ -29,7 +29,7 @@ from plantar.logs.readers import open_log
 from plantar.online.estimates import Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import UNKNOWN, Replay
-from plantar.online.verdicts import judged, log_notes
+from plantar.online.verdicts import judged, log_notes, result_notes
 from plantar.pages import ONLINE
 from plantar.results.feet import FeetResult, Parameter
 from plantar.results.numbers import number
@@ -106,7 +106,7 @@ def run(
         estimator.write_model(write_model)
     step(f"read {log.name}")
     motion = open_log(log, known, memory=memory)
-    notes = [*log_notes(known, motion), *motion.notes, *motion.joint_notes(known)]
+    notes = [*log_notes(known, motion), *result_notes(batch), *motion.notes, *motion.joint_notes(known)]
     step(f"replay {log.name}")
     end_progress(quiet)
     shown = sys.stdout.isatty() and not json and not quiet

@@ -1,4 +1,4 @@
-"""A torque channel that reads exactly nothing wherever it is small: a driver's dead band."""
+"""A channel of a force sensor that reads exactly nothing wherever it is small: a driver's dead band."""
 
 from __future__ import annotations
 
@@ -16,24 +16,27 @@ from plantar.robot.model import RobotModel
 LEAST_SHARE = 0.01  # of the loaded samples that read exactly 0
 OFTEN = 5.0  # times as often as the next value: of one that reads in steps, 0 is one of many
 FINE = 200  # other values: fewer are a channel that reads in steps as large as its torque
-DEAD_BAND = "dead_band"
+DEAD_BAND, DEAD_FORCE = "dead_band", "dead_force"
 
 
 def check_dead_bands(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """Torques of a loaded foot about its horizontal axes that are exactly 0 far more often than any other value."""
+    """Forces of a loaded foot, and torques about its horizontal axes, that are exactly 0 far more often than any other
+    value: forces go into the bush's torque by its height over the sensor."""
     for foot in robot.feet.values():
         names = wrench_columns(foot.wrench.name)
         squares = np.zeros(len(log))
         for name in names[:3]:
             squares += log.column(name) ** 2
         loaded = squares > (LANDING_SHARE * robot.mass * GRAVITY) ** 2
-        dead = [name for name in names[3:5] if _share_at_zero(log.column(name)[loaded]) > LEAST_SHARE]
+        dead = [name for name in names[:5] if _share_at_zero(log.column(name)[loaded]) > LEAST_SHARE]
         if dead:
             text = (
                 f"{named(dead)}: exactly 0 far more often than any other value while the foot carries load: a "
                 "dead band of the driver, or lost values"
             )
-            yield Finding(DEAD_BAND, f"{text} (valid: the torque as measured; empty cells for lost values)")
+            yield Finding(
+                DEAD_BAND, f"{text} (valid: forces and torques as measured; empty cells for lost values)"
+            )
 
 
 def _share_at_zero(values: Array) -> float:

@@ -11,7 +11,7 @@ from plantar.errors import DataError, clock
 from plantar.faults.air_readings import check_air_readings
 from plantar.faults.bush_frames import check_bush_axes, check_bush_link
 from plantar.faults.channels import check_channels, named
-from plantar.faults.dead_band import check_dead_bands
+from plantar.faults.dead_band import DEAD_FORCE, check_dead_bands
 from plantar.faults.gaps import check_gaps
 from plantar.faults.imu import check_imu
 from plantar.faults.joints.closed_chain import check_closed_chain
@@ -167,7 +167,9 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             text = (
                 f"{named(dead, f'wrench.{sensor.name}.', len(parts))}: never change{'s' * (len(dead) == 1)}"
             )
-            yield Finding("dead_channel", f"{text}; is the {'channel' if len(dead) == 1 else 'sensor'} dead?")
+            # The bush's torque is off by a force times the bush's height over the sensor.
+            code = DEAD_FORCE if any(part != parts[-1] for part in dead) else "dead_channel"
+            yield Finding(code, f"{text}; is the {'channel' if len(dead) == 1 else 'sensor'} dead?")
     yield from check_load_signs(robot, loads)
     yield from check_air_readings(robot, log.period, loads, wrenches)
     weight = robot.mass * GRAVITY

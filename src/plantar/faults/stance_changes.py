@@ -19,6 +19,8 @@ FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by hal
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
 SHIFTED = 0.005  # of a sole's length: what moves by less may be noise of the forces
+# Likewise: sound robots move by 0.014 with arms and trunk, which exchanged feet on unlike levels may undo by chance.
+EXCHANGED_MOVES = 0.015
 # Between the ground's usual force and the IMU's up: more than zeros of sensors make.
 LEANING = np.radians(3.5)
 QUARTERS = (90, 180, -90)  # deg: how a sensor is mounted wrongly, or its axes named
@@ -61,8 +63,13 @@ class StanceChanges:
     @property
     def shifted(self) -> float:
         """What moves by less [m] may be noise of the forces."""
+        return SHIFTED * self.longest
+
+    @property
+    def longest(self) -> float:
+        """Of the soles' lengths and widths [m]."""
         soles = (foot.sole.polygon for foot in self.stance.robot.feet.values())
-        return SHIFTED * max(float(np.ptp(polygon, axis=0).max()) for polygon in soles)
+        return max(float(np.ptp(polygon, axis=0).max()) for polygon in soles)
 
     @cached_property
     def exchanged_feet(self) -> StanceSides:

@@ -12,6 +12,7 @@ from plantar.faults.stance_changes import (
     BETTER,
     CERTAIN_MOMENT_ARM,
     EXCHANGED,
+    EXCHANGED_MOVES,
     FAR_BETTER,
     LEANING,
     NOTABLE,
@@ -87,7 +88,8 @@ def _balances(changes: StanceChanges) -> bool:
 def _feet_follow(changes: StanceChanges) -> bool:
     """Whether exchanged feet follow the motion far better, and better than a sensor that is turned."""
     quarter = np.inf if changes.quarter_turn is None else changes.quarter_turn.moving
-    return changes.exchanged_feet.moving < min(changes.far, quarter)
+    moves = changes.as_is.moving > EXCHANGED_MOVES * changes.longest
+    return moves and changes.exchanged_feet.moving < min(changes.far, quarter)
 
 
 def _quarter_follows(changes: StanceChanges) -> bool:

@@ -18,7 +18,7 @@ from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import WaitingLogs
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.sensors.accelerometer_delay import AccelerometerDelay, accelerometer_delay
+from plantar.sensors.accelerometer_delay import AccelerometerDelay, accelerometer_delay, orientation_notes
 from plantar.sensors.attitude_lag import NO_LAG, AttitudeLag, log_attitude_lag
 from plantar.sensors.delays.refined_delays import residuals_at
 from plantar.sensors.delays.sensor_delay import on_force_cells
@@ -90,6 +90,8 @@ def look_at(robot: RobotModel, timed: bool, log: MotionLog) -> FirstLook:
     with ThreadPoolExecutor(len(asked)) as pool:  # of a long log each takes a while
         each = pool.map if len(log) > LONG else map
         residuals, (accelerometer, tilt, lag) = each(lambda ask: ask(), asked)
+    if robot.imu is not None:
+        log = log.with_columns({}, *orientation_notes(log, robot.imu.name, accelerometer))
     return FirstLook(log, gyroscope, accelerometer, tilt, lag, residuals)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from plantar.conventions import ROTATIONAL_AXES
@@ -26,7 +27,7 @@ from plantar.feet.interval_width.joint_compliance import joint_compliance_causes
 from plantar.feet.interval_width.sensor_causes import encoder_delay_causes, fading_causes, imu_turn_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import robot_causes, systematic_causes
-from plantar.feet.place.misread_joints import OUT_OF_TIME, misread_joint_notes
+from plantar.feet.place.misread_joints import IMU_SOFT, OUT_OF_TIME, misread_joint_notes
 from plantar.feet.place.place_notes import far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import recordings_of
@@ -70,6 +71,12 @@ def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
     late = [note for note in found.notes if note.code in (RECORDING_LATE, OUT_OF_TIME)]
     notes = (*found.notes, *internal_errors(fitted.foot, fitted.given_up))
     return replace(found, parameters=doubted(found.parameters, late), notes=notes)
+
+
+def without_soft_imu(feet: Sequence[FootFit]) -> list[FootFit]:
+    """The feet, none of whose numbers is usable where one shows that the IMU of all leans in its mount."""
+    soft = [note for one in feet for note in one.notes if note.code == IMU_SOFT]
+    return [replace(one, parameters=doubted(one.parameters, soft)) for one in feet]
 
 
 def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart) -> FootFit:

@@ -10,7 +10,7 @@ from plantar.contact.phases import carried_weight
 from plantar.conventions import GRAVITY
 from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
-from plantar.feet.foot_assessment import assess_foot
+from plantar.feet.foot_assessment import assess_foot, without_soft_imu
 from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.place.told_exact import as_measured
@@ -110,7 +110,8 @@ def fit_prepared(
     fitted = with_shared_hysteresis(feet)
     between = between_all(list(fitted.values()))
     return_freed(size)  # likewise, the fits
-    found = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
+    assessed = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
+    found = without_soft_imu(assessed)
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between, residuals)
 

@@ -161,12 +161,18 @@ def _air_zeros(
 
 
 def _lifted(robot: RobotModel, raw: Mapping[str, BushState], foot: str) -> Mask:
-    """Where a sole is clearly above that of another foot which carries the robot, (N,)."""
-    sole = raw[foot].sole_position[:, 2] - LIFTED * float(np.ptp(robot.feet[foot].sole.polygon, axis=0).max())
-    others = [state for name, state in raw.items() if name != foot]
-    carried = LOADED * robot.mass * GRAVITY
-    above = [(sole > other.sole_position[:, 2]) & (other.force_z > carried) for other in others]
-    return np.asarray(np.logical_or.reduce([np.zeros(len(sole), dtype=bool), *above]))
+    """Where a sole is clearly above that of another foot which carries the robot, and above where it stood when it
+    carried it itself, as on a step, (N,)."""
+    state, carried = raw[foot], LOADED * robot.mass * GRAVITY
+    clear = LIFTED * float(np.ptp(robot.feet[foot].sole.polygon, axis=0).max())
+    found = np.zeros(len(state.force_z), dtype=bool)
+    for name, other in raw.items():
+        if name != foot:
+            above = state.sole_position[:, 2] - other.sole_position[:, 2]
+            stood = above[(state.force_z > carried) & np.isfinite(above)]
+            level = max(0.0, float(stood.min())) if stood.size else 0.0
+            found |= (above > clear + level) & (other.force_z > carried)
+    return found
 
 
 def _require(robot: RobotModel) -> Imu:

@@ -29,6 +29,10 @@ RobotInput: TypeAlias = "RobotModel | PathInput"
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
 PROBES = 40  # samples of a log that another one may hold as well
+OVERLAP = (
+    0.1  # share of a log that another may hold too: told twice, it narrows intervals by a twentieth at most
+)
+BEGUN_ALIKE = 0.5  # the same of logs that begin alike, as simulations without noise do before they part
 AHEAD = 2**26  # bytes of text: read by the time that what works on logs is imported
 FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
 
@@ -172,13 +176,13 @@ def check_names(logs: Sequence[MotionLog]) -> None:
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
         for other in seen.values():
             if _same_recording(log, other):
-                message = f"{other.source} and {log.source} hold the same recording, or most of one"
+                message = f"{other.source} and {log.source} hold the same recording, or a part of one"
                 raise DataError(f"{message} ({once})")
         seen[log.name] = log
 
 
 def _same_recording(log: MotionLog, other: MotionLog) -> bool:
-    """Whether most of the shorter log's samples are samples of the longer one: as they are, cut, thinned, on another
+    """Whether many of the shorter log's samples are samples of the longer one: as they are, cut, thinned, on another
     clock, or with other columns beside the same force sensors: joints alone may do the same twice."""
     short, long = sorted((log, other), key=len)
     shared = sorted(short.columns.keys() & long.columns.keys())
@@ -194,8 +198,10 @@ def _same_recording(log: MotionLog, other: MotionLog) -> bool:
         {row.tobytes() for row in np.column_stack(columns)}
         for columns in (list(told.values()), [long.columns[name][alike] for name in told])
     )
+    alike_at_first = all(short.columns[name][0] == long.columns[name][0] for name in shared)
+    share = BEGUN_ALIKE if alike_at_first else OVERLAP
     # Noise-free logs may rest alike: that is one sample of all.
-    return len(asked & there) > max(1, len(asked) / 2)
+    return len(asked & there) > max(1, share * len(asked))
 
 
 def _bounded(logs: Sequence[LogInput], memory: int) -> bool:

@@ -10,9 +10,15 @@ from plantar.feet.assess.data_faults import UNMENDED, doubted
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.online.replay import IDENTIFY
+from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
+from plantar.sensors.accelerometer_delay import ORIENTATION_LATE
+from plantar.sensors.attitude_lag import ATTITUDE_LATE
+from plantar.sensors.tilt_error import ATTITUDE_TILTED
 
+# Codes of notes on an IMU whose orientation a batch fit put right, or did without: the estimator goes by it as it is.
+OF_ORIENTATION = frozenset({ATTITUDE_LATE, ATTITUDE_TILTED, ORIENTATION_LATE})
 UNTOLD = (
     "without a result of `identify feet`: errors of the robot file do not show here, and hysteresis of the rubber only "
     "in large motions"
@@ -30,9 +36,20 @@ def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
     return tuple(finding_notes(log, findings))
 
 
+def result_notes(result: FeetResult | None) -> tuple[Note, ...]:
+    """Warnings, one of each code, of what a batch `result` says of the IMU, by whose orientation the estimator goes."""
+    notes = () if result is None else result.notes
+    first = {note.code: note for note in reversed(notes) if note.code in OF_ORIENTATION}
+    return tuple(
+        Note(code, "warning", f"in the result: {note.text}; here it is used as it is")
+        for code, note in first.items()
+    )
+
+
 def judged(rows: Sequence[Parameter], notes: Sequence[Note], *, identified: bool) -> list[Parameter]:
     """The rows, at most weak where the log has a fault, or no batch result has been `identified` for this robot."""
-    faults = [note for note in notes if note.severity == "warning" and note.code in UNMENDED]
+    doubts = UNMENDED | OF_ORIENTATION
+    faults = [note for note in notes if note.severity == "warning" and note.code in doubts]
     found = doubted(rows, faults)
     if identified:
         return [replace(row, advice=AGAIN) if row.advice == IDENTIFY else row for row in found]

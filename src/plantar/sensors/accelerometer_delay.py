@@ -23,6 +23,7 @@ from plantar.contact.standing_imu import sole_motions, standing_loads
 from plantar.conventions import GRAVITY, NORMAL95, SHOWN, Array, rotation_from_quaternion
 from plantar.estimation.triangular import RANK_TOLERANCE
 from plantar.estimation.weighted_mean import weighted_mean
+from plantar.faults.gyroscope import SURE
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -40,6 +41,7 @@ LARGEST = 0.01  # s: the filter of an accelerometer of its own; later is a fault
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
+ORIENTATION_LATE = "orientation_late"
 COLUMNS = 11
 """The lean, and what goes with it."""
 ACCELEROMETER, ORIENTATION = 1, 2
@@ -126,6 +128,20 @@ def imu_delay(told: Sequence[AccelerometerDelay], gyroscope: ImuFilter | None) -
     """The `filter_delay` [s] and its deviation that logs of one device tell together, each of them as `told`.
     `gyroscope`: what they tell of the filter of the same device."""
     return filter_delay(device_delay(told), gyroscope, device_delay(told, ORIENTATION))
+
+
+def orientation_notes(log: MotionLog, imu: str, found: AccelerometerDelay) -> list[Note]:
+    """A warning where a log without gyroscope, which would tell better, shows an orientation that is behind its
+    accelerometer by more than encoders that are read early make of it."""
+    late, std = found.late(ORIENTATION)
+    if log.has(*imu_columns(imu, "angular_velocity")) or late < max(LARGEST, SURE * std):
+        return []
+    text = (
+        f"{log.name}: columns 'imu.{imu}.orientation.*': {1e3 * late:.0f} ms behind the accelerometer over soles that "
+        "stand: late, behind a slow filter, or filtered towards the accelerometer; stiffness and damping follow it "
+        "(valid: an attitude filter that keeps up, or the gyroscope in the log, beside which it is put right)"
+    )
+    return [Note(ORIENTATION_LATE, "warning", text)]
 
 
 def with_imus_on_time(

@@ -21,9 +21,11 @@ from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.gyroscope_delay import USUAL
 from plantar.signals.orientation import rates_from, unit_quaternions
 
-EXPLAINED = 0.5  # share of the disagreement that a lag must explain; with sound sensors it is a tenth at most
+ATTITUDE_LATE = "attitude_late"
+# Share of the disagreement that a lag must explain: of filters of higher order, and of dead time, it does a third.
+EXPLAINED = 0.25
 BETTER = (
-    0.5  # share of what a tilt error leaves of it that a lag may leave at most; a real one leaves a seventh
+    3.0  # times a tilt error's odds of explaining it: beside a real one twice at most, of lags four or more
 )
 
 
@@ -46,10 +48,16 @@ class AttitudeLag:
         """The time constant τ [s]."""
         return self.product / self.predicted if self.predicted > 0 else 0.0
 
+    @property
+    def explained(self) -> float:
+        """Share of the disagreement's square that it explains."""
+        return self.lag * self.product / self.error if self.error > 0 else 0.0
+
     def believed(self, tilt: TiltError) -> bool:
         """Whether a lag explains the disagreement, far better than the accelerometer's `tilt` of the same logs."""
-        explained = self.lag * self.product / self.error if self.error > 0 else 0.0
-        return self.lag > USUAL and explained > EXPLAINED and 1 - explained < BETTER * (1 - tilt.explained)
+        own, other = self.explained, tilt.explained
+        better = own * (1 - other) > BETTER * other * (1 - own)
+        return self.lag > USUAL and own > EXPLAINED and better
 
 
 NO_LAG = AttitudeLag()
@@ -87,7 +95,7 @@ def without_lag(logs: Sequence[MotionLog], imu: Imu, found: AttitudeLag) -> list
             rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
             if log.orientation(imu.name) is not None and np.isfinite(np.hstack([rates, acceleration])).all():
                 attitude = attitude_from_inertial(rates, acceleration, log.period)
-                note = Note("attitude_late", "warning", f"{log.name}: {text}")
+                note = Note(ATTITUDE_LATE, "warning", f"{log.name}: {text}")
                 log = log.with_columns(dict(zip(orientation, attitude.T, strict=True)), note)
         read.append(log)
     return read

@@ -32,6 +32,7 @@ from plantar.signals.orientation import rates_from, unit_quaternions
 from plantar.signals.resampling import shifted
 from plantar.signals.segments import runs
 
+ATTITUDE_TILTED = "attitude_tilted"
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
 LEAST_RATE = 0.01  # 1/s: below it the damping is not affected
 EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that shows it
@@ -144,7 +145,7 @@ def right_attitude(
     unit = unit_quaternions(orientation)
     rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
     right = put_right(unit, rates, acceleration, bushes, contacts, log.period)
-    return right, Note("attitude_tilted", "info", text)
+    return right, Note(ATTITUDE_TILTED, "info", text)
 
 
 def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period: float) -> TiltError:

@@ -14,8 +14,9 @@ from scipy.spatial.transform import Rotation
 from biped import record, sines, sway
 from feet_trials import LINEAR, codes, noisy, stepping, without
 from plantar.feet.identify import identify_feet
-from plantar.feet.place.misread_joints import MISREAD, OUT_OF_TIME, _misread
+from plantar.feet.place.misread_joints import IMU_SOFT, MISREAD, OUT_OF_TIME, _misread
 from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
@@ -62,7 +63,7 @@ def imu_late(log: MotionLog, late: float) -> MotionLog:
 
 
 def said(found: FeetResult) -> list[str]:
-    codes = (MISREAD, OUT_OF_TIME)
+    codes = (MISREAD, OUT_OF_TIME, IMU_SOFT)
     return [note.text for note in found.notes if note.code in codes and note.severity == "warning"]
 
 
@@ -147,6 +148,35 @@ def test_an_imu_on_a_soft_mount_is_told_with_its_tilt(robot: RobotModel, tilt: f
     for text in texts:
         size = text.partition("the IMU tilts by ")[2].split()[0]
         assert float(size) == pytest.approx(1e3 * abs(tilt), rel=0.2)
+
+
+def test_one_foot_that_shows_a_soft_mount_tells_of_both(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = identify_feet(robot, [on_soft_mount(log, 0.006) for log in standing()], settings=LINEAR)
+    assert [note.text[:10] for note in shown.notes if note.code == IMU_SOFT] == ["right roll"]
+
+    def told(_: RobotModel, __: Any, wide: Any) -> list[Note]:
+        note = Note(IMU_SOFT, "warning", "right roll: the IMU tilts")
+        return [note] * (wide.foot == "right" and wide.axis == "roll")
+
+    monkeypatch.setattr("plantar.feet.foot_assessment.misread_joint_notes", told)
+    rows = [one for one in identify_feet(robot, standing(), settings=LINEAR).parameters if one.axis != "z"]
+    assert {one.verdict for one in rows if one.foot == "left"} == {"weak"}
+    assert all("the IMU tilts" in one.reason for one in rows if one.foot == "left")
+
+
+def test_what_a_soft_mount_moves_by_two_per_cent_matters() -> None:
+    """It moves hysteresis and the bush's place as well."""
+    for moved, matters in ((7.0, False), (9.0, True)):
+        values, std = np.array([400.0 + moved, 20.0, 0.003]), np.array([1.0, 1.0, 1e-4])
+        fit = SimpleNamespace(values=values, std=std, squares=7.0, singular=False)
+        wide: Any = SimpleNamespace(holds=lambda _: True)
+        wider: Any = SimpleNamespace(least_squares=fit)
+        for kind in ("soft", "gain"):
+            found = _misread("the IMU", kind, wider, wide, np.array([400.0, 20.0]))
+            assert found is not None
+            assert found.matters == (matters and kind == "soft")
 
 
 def test_logs_without_an_accelerometer_tell_no_soft_mount(robot: RobotModel) -> None:

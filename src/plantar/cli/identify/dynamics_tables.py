@@ -8,6 +8,9 @@ from plantar.cli.console.terminal import VERDICT_STYLE, print_notes, table
 from plantar.results.dynamics import ONE_OF_MANY, DynamicsResult
 from plantar.results.numbers import number
 
+DUST = (
+    1e-9  # of the largest number of a unit: rounding leaves as much of what is zero, and no sensor shows it
+)
 LINK_COLUMNS = ("m", "mx", "my", "mz")
 
 
@@ -28,9 +31,16 @@ def print_inertia(out: Console, result: DynamicsResult) -> None:
 
 def print_joints(out: Console, result: DynamicsResult) -> None:
     """Every joint's terms with intervals and verdicts; validation; notes."""
+    largest: dict[str, float] = {}
+    for row in result.parameters:
+        largest[row.unit] = max(largest.get(row.unit, 0.0), abs(row.value))
+
+    def shown(value: float, of: str) -> str:
+        return number(0.0 if abs(value) < DUST * largest[of] else value)
+
     cells = [
-        (row.joint, row.name, number(row.value), row.unit,
-         f"{number(row.interval95[0])} to {number(row.interval95[1])}", row.verdict, row.reason)
+        (row.joint, row.name, shown(row.value, row.unit), row.unit,
+         " to ".join(shown(end, row.unit) for end in row.interval95), row.verdict, row.reason)
         for row in result.parameters
     ]  # fmt: skip
     columns = ("joint", "parameter", "value", "unit", "95 % interval", "verdict", "reason")

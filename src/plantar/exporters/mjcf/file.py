@@ -112,7 +112,9 @@ class Compiled:
         elements = {body.get("name", ""): body for body in root.iter("body")}
         if name not in elements:
             message = f"has no body '{name}' (the ankle link of the robot file)"
-            raise ExportError(message, path=self.path, valid=nearest(name, elements))
+            raise ExportError(
+                message, path=self.path, valid=nearest(name, elements) or "a model of the robot"
+            )
         return elements[name]
 
     def geom_elements(self, body: ET.Element, name: str) -> Iterator[tuple[ET.Element, int]]:

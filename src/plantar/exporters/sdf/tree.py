@@ -19,6 +19,7 @@ from plantar.exporters.poses import inverse, pose, rpy_of
 from plantar.exporters.urdf.geometry import mesh_points, solid_corners
 from plantar.exporters.xml_file import DEPTH_LIMIT, load_xml, numbers, vector
 
+OF_LINKS = "a <model> with the robot's <link>s in this file itself: what it includes is not read"
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame
 
 
@@ -34,7 +35,7 @@ class SdfTree:
             names = [link.get("name", "") for model in models for link in model.findall("link")]
             missing = next((ankle for ankle in ankles if ankle not in names), ankles[0])
             message = f"has no model with the link '{missing}'"
-            raise ExportError(message, path=path, valid=nearest(missing, names))
+            raise ExportError(message, path=path, valid=nearest(missing, names) or OF_LINKS)
         self.model = holding[0]
         self.links = {e.get("name", ""): e for e in self.model.findall("link")}
         self.joints = {e.get("name", ""): e for e in self.model.findall("joint")}

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from plantar.faults.channels import LOST_FRAMES
-from plantar.faults.dead_band import DEAD_BAND
+from plantar.faults.dead_band import DEAD_BAND, DEAD_FORCE
 from plantar.faults.gyroscope import IMU_LATE
 from plantar.faults.standing import LEANS, LEANS_LITTLE
 from plantar.feet.assess.sensor_hysteresis import HYSTERESIS
@@ -15,6 +15,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 from plantar.results.feet import Parameter
+from plantar.sensors.accelerometer_delay import ORIENTATION_LATE
 from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
 from plantar.sensors.moments.torque_delay import TORQUES_LATE
@@ -24,7 +25,7 @@ UNMENDED = frozenset(
     {
         "sign", LEANS, LEANS_LITTLE, "imu_turned", "wrench_turned", IMU_LATE, "gyroscope_frame", "gyroscope_scale",
         "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
-        FAR, BUSH_TURNED, DEAD_BAND, LOST_FRAMES,
+        FAR, BUSH_TURNED, DEAD_BAND, DEAD_FORCE, LOST_FRAMES, ORIENTATION_LATE,
     }
 )  # fmt: skip
 # Codes of warnings on sensors that lag, or repeat what they read before: what they spoil is damping and memory.

@@ -26,13 +26,16 @@ from plantar.signals.filters import differentiate
 from plantar.signals.orientation import attitude
 
 MISREAD = "joint_misread"
-OUT_OF_TIME = "imu_out_of_time"
-# Times less that is left of the squares than by the bush alone; play shows at its joint's turns only.
+OUT_OF_TIME, IMU_SOFT = "imu_out_of_time", "imu_soft"
+# Times less that is left of the squares than by the bush alone; play shows at its joint's turns only, and a soft mount
+# beside hysteresis, which takes most of what it leaves. Of an IMU on a stiff one under standing feet 1.1 at most.
 BETTER, BETTER_TURNING = 1.5, 1.3
+BETTER_OF = {"play": BETTER_TURNING, "soft": BETTER_TURNING}
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
 ALL_LATE = 0.25  # s, likewise of all joints, which are late together where it is the IMU that is early
+SOFT_MOVES = 0.02  # share of stiffness or damping that a soft mount has to move
 # Of an interval, by which play of a joint, or hysteresis of a sensor, moves its number: both stay behind only after a
 # turn is far enough, so that the sign of a rate gives back half of what is missing at most.
 PART = 0.5
@@ -74,7 +77,7 @@ def misread_joint_notes(robot: RobotModel, tangent: Tangent, wide: AxisFit) -> l
     alone = tangent.least_squares
     each = [_columns(robot, one, wide) for one in tangent.recordings]
     names, told = each[0][0], [columns for _, columns in each]
-    needed = np.array([BETTER_TURNING if kind == "play" else BETTER for _, kind in names])
+    needed = np.array([BETTER_OF.get(kind, BETTER) for _, kind in names])
     left = needed * least_left(tangent.blocks, told) / alone.squares
     if left.min() > 1:
         return []
@@ -86,7 +89,7 @@ def misread_joint_notes(robot: RobotModel, tangent: Tangent, wide: AxisFit) -> l
     found = sorted((fit for fit in fits if fit is not None), key=lambda one: one.squares)
     if not found or not found[0].matters:
         return []
-    if alone.squares < (BETTER_TURNING if found[0].kind == "play" else BETTER) * found[0].squares:
+    if alone.squares < BETTER_OF.get(found[0].kind, BETTER) * found[0].squares:
         return []
     alike = [one for one in found if one.squares <= ALIKE * found[0].squares]
     text = (
@@ -94,8 +97,9 @@ def misread_joint_notes(robot: RobotModel, tangent: Tangent, wide: AxisFit) -> l
         f"{', or '.join(map(str, alike))}. Stiffness and damping follow it (valid: encoders without play, whose angles "
         "are the links', all read at one moment; a stiff mount of the IMU)"
     )
-    together = all(one.kind == "together" for one in alike)
-    return [Note(OUT_OF_TIME if together else MISREAD, "warning", text)]
+    kinds = {one.kind for one in alike}
+    code = OUT_OF_TIME if kinds == {"together"} else IMU_SOFT if kinds == {"soft"} else MISREAD
+    return [Note(code, "warning", text)]
 
 
 def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array) -> Misread | None:
@@ -107,7 +111,10 @@ def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array)
     if not (SURE * std < away < most and not fit.singular):
         return None
     moved = (fit.values[:2] - usual[:2]) / (PART if kind == "play" else 1.0)
-    return Misread(joint, kind, size, fit.squares, not wide.holds(moved))
+    # A soft mount also moves what hysteresis and the bush's place are taken for: only a part of that shows here.
+    soft = kind == "soft" and bool((np.abs(moved) > SOFT_MOVES * np.abs(usual[:2])).any())
+    matters = soft or not wide.holds(moved)
+    return Misread(joint, kind, size, fit.squares, matters)
 
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> tuple[list[tuple[str, str]], Array]:
