@@ -14,7 +14,7 @@ import pytest
 
 from biped import TRUTH
 from command_line import refused, run
-from fleet_samples import broken_logs, make_logs, small_fleet, write_manifest
+from fleet_samples import broken_logs, make_logs, short_log, small_fleet, write_manifest
 from plantar.errors import PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
@@ -23,6 +23,7 @@ from plantar.fleet.places import PlaceError, Store
 from plantar.fleet.robots import robot_at
 from plantar.fleet.run import Outcome, run_fleet
 from plantar.fleet.work import Task, compute
+from plantar.logs.save import save_log
 
 SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
 
@@ -82,6 +83,9 @@ def test_content_counts_not_the_place_or_the_date(client: Any, tmp_path: Path) -
     robot = tmp_path / "robot.yaml"
     robot.write_text(robot.read_text() + "\n# measured again\n")
     assert done(client, moved, out).reused == 0
+    save_log(short_log(1), tmp_path / "elsewhere" / log.name)  # recorded anew
+    assert done(client, moved, out).reused == 0
+    assert done(client, moved, out).reused == 1
 
 
 def test_broken_logs_of_ten_kinds_are_told_and_do_no_harm(client: Any, tmp_path: Path) -> None:
