@@ -122,7 +122,7 @@ def found(factor: float, draw: int) -> FeetResult:
 
 
 def test_what_a_rehearsal_shows_is_as_it_is_kept() -> None:
-    """Of feet that differ in pitch and roll, left and right, and of a robot whose centre of pressure comes near edges."""
+    """Of feet that differ in pitch and roll, left and right; of a centre of pressure that comes near edges."""
     shown = [
         rehearsal._measured(0.7, hrp2.robot(), rollout(), Physics(bushes=PAPER))
         for rollout in (tilted, flung)
