@@ -264,6 +264,16 @@ def test_a_signal_has_a_row_for_each_stamp_whichever_way_it_was_written(
     np.testing.assert_array_equal(time, np.arange(4.0))
 
 
+def test_mc_rtc_versions_are_tried_up_to_the_tenth(tmp_path: Path) -> None:
+    path, time = tmp_path / "log.bin", np.arange(20.0)
+    save_mc_rtc(path, time, np.zeros((20, 2)), np.tile(np.eye(4), (20, 1, 1)))
+    content = path.read_bytes()
+    for version, refused in ((10, "does not name its 2 joints"), (11, "is not an mc_rtc binary log")):
+        path.write_bytes(b"ANN" + bytes([0x45 + version]) + content[4:])
+        with pytest.raises(LogError, match=refused):
+            mc_rtc.read(path, None, ReadLimit(path, 10**9))
+
+
 @pytest.mark.parametrize("magic", [b"ANNA", b"ANN", b"XNNE", b"ANNZ"])
 def test_an_mc_rtc_log_begins_as_one(magic: bytes, tmp_path: Path) -> None:
     path = tmp_path / "log.bin"
