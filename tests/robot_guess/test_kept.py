@@ -44,14 +44,23 @@ CHANGES: dict[str, Callable[[MotionLog], MotionLog]] = {
 }  # fmt: skip
 
 
+# On the left a frame that is called a force sensor, on the right one of the sensor's own name.
+FRAMES = """
+<link name="left_ft_sensor"/><joint name="left_seat" type="fixed"><parent link="left_foot"/>
+  <child link="left_ft_sensor"/><origin xyz="0.01 0.02 -0.03" rpy="0 0 0.2"/></joint>
+<link name="right"/><joint name="right_seat" type="fixed"><parent link="right_foot"/>
+  <child link="right"/><origin xyz="-0.01 0 -0.02"/></joint>
+</robot>"""
+
+
 def _other(name: str) -> str:
     if not name.startswith("wrench."):
         return name
     return name.replace("left", "right") if "left" in name else name.replace("right", "left")
 
 
-def guessed(folder: Path, logs: list[MotionLog]) -> str:
-    (folder / "biped.urdf").write_text(URDF)
+def guessed(folder: Path, logs: list[MotionLog], urdf: str) -> str:
+    (folder / "biped.urdf").write_text(urdf)
     files = [folder / f"{log.name}.csv" for log in logs]
     for file, log in zip(files, logs, strict=True):
         save_log(log, file)
@@ -63,9 +72,10 @@ def guessed(folder: Path, logs: list[MotionLog]) -> str:
         return f"{error}\n".replace(str(folder), "FOLDER")
 
 
-@pytest.mark.parametrize("name", [*MOUNTINGS, *CHANGES])
+@pytest.mark.parametrize("name", [*MOUNTINGS, *CHANGES, "frames of sensors"])
 def test_a_guess_is_as_it_is_kept(name: str, tmp_path: Path) -> None:
     mounting = MOUNTINGS.get(name, Mounting())
     logs = [noisy(record(sway(f"log_{seed}", seed, 12.0, shift=0.3), mounting), seed) for seed in (1, 2)]
     logs = [CHANGES[name](log) if name in CHANGES else log for log in logs]
-    assert_as_kept(guessed(tmp_path, logs), KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)
+    urdf = URDF.replace("</robot>", FRAMES) if name == "frames of sensors" else URDF
+    assert_as_kept(guessed(tmp_path, logs, urdf), KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)
