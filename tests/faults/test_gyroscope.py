@@ -57,7 +57,7 @@ def small(log: MotionLog, share: float = 0.01) -> MotionLog:
 def test_what_is_read_while_the_robot_stands_does_not_count(
     log: MotionLog, factor: float, found: list[str]
 ) -> None:
-    """It stands for three quarters of the time after whole swings; its gyroscope's noise turns less than its attitude's."""
+    """It stands for three quarters of the time after whole swings; its gyroscope is less noisy than its attitude."""
     random, names = np.random.default_rng(1), [f"imu.chest.orientation.{part}" for part in "wxyz"]
     moves = (log.time < 10.0)[:, None]
     noise = 1e-3 * random.standard_normal((len(log), 3))
