@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -48,7 +49,9 @@ class Heard:
 
     def _anywhere(self, text: str) -> str:
         """The text on one line, wherever this test and the packages have their folders."""
-        text = re.sub(re.escape(str(self.temporary)) + r"/[^/\s,:;'\")]+", "FOLDER", " ".join(text.split()))
+        text = " ".join(text.split())
+        for folder in (str(self.temporary), tempfile.gettempdir()):
+            text = re.sub(re.escape(folder) + r"/[^/\s,:;'\")]+", "FOLDER", text)
         return re.sub(r"/\S*/site-packages/\S*/", "", text)
 
     def end(self) -> None:
