@@ -89,9 +89,7 @@ ROWS = (
 )  # fmt: skip
 
 
-def test_a_run_is_as_it_is_kept(
-    client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_is_as_it_is_kept(client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Groups of which logs are broken, gone, or only to validate: twice, then with all logs there; tables and words."""
     make_logs(tmp_path, 3)
     broken_logs(tmp_path)
@@ -99,7 +97,6 @@ def test_a_run_is_as_it_is_kept(
     (tmp_path / "again.yaml").write_text(robot.read_text() + "# of another robot\n")
     groups = read_manifest(write_manifest(tmp_path / "fleet.csv", ROWS))
     settings, told = FeetSettings(model="kelvin_voigt", wrench_delay=0.0), dict[str, Any]()
-    monkeypatch.setenv("COLUMNS", "1000")
     for run in ("first", "second", "with all logs"):
         if run == "with all logs":
             (tmp_path / "log_0.parquet").rename(tmp_path / "gone.parquet")
@@ -107,13 +104,13 @@ def test_a_run_is_as_it_is_kept(
         seen: list[Progress] = []
         outcome = run_fleet(groups, store, settings, client, seen.append)
         rows = [asdict(row) | {"key": len(row.key)} for row in read_groups(store)]
-        print_summary(write_report(store, 2.0))
-        print(counts(outcome))
+        summary = write_report(store, 2.0)
         found, last = read_results(store).to_pylist(), seen[-1]
         told[run] = {
             "reused": outcome.reused, "done": outcome.done, "written": outcome.written, "groups": rows,
             "last": [last.total, last.reused, last.done, last.failed], "units": len(store.names("units")),
             "results": found if run == "first" else np.array([row["value"] for row in found]),
-            "failures": read_failures(store).to_pylist(), "said": capsys.readouterr().out,
+            "failures": read_failures(store).to_pylist(), "counts": counts(outcome),
+            "alarms": [alarm.text for alarm in summary.alarms], "reasons": summary.failures,
         }  # fmt: skip
     assert_as_kept(described(told).replace(str(tmp_path), "FOLDER"), KEPT / "run.txt", share=1e-5)
