@@ -111,6 +111,7 @@ def test_a_run_is_as_it_is_kept(client: Any, tmp_path: Path, monkeypatch: pytest
             "last": [last.total, last.reused, last.done, last.failed], "units": len(store.names("units")),
             "results": found if run == "first" else np.array([row["value"] for row in found]),
             "failures": read_failures(store).to_pylist(), "counts": counts(outcome),
-            "alarms": [alarm.text for alarm in summary.alarms], "reasons": [(one.count, one.example) for one in summary.failures],
+            "alarms": [alarm.text for alarm in summary.alarms],
+            "reasons": [(one.count, one.example) for one in summary.failures],
         }  # fmt: skip
     assert_as_kept(described(told).replace(str(tmp_path), "FOLDER"), KEPT / "run.txt", share=1e-5)
