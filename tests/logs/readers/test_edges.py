@@ -166,6 +166,13 @@ def test_a_file_in_blocks_reads_as_it_does_whole(
     assert [note.text for note in notes] == ["log.txt: line 202 left out: not 2 numbers"]
 
 
+def test_lines_without_anything_stand_before_and_among_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "log.txt"
+    path.write_text("\n  \n/ /\n# a b\n\n1 2\n\n3 4\n")
+    values, _ = read_numbers(path, ReadLimit(path), [])
+    np.testing.assert_array_equal(values, [[1.0, 2.0], [3.0, 4.0]])
+
+
 CELLS = [[0.1, 0.05], [0.1, -0.05], [-0.1, 0.0]]
 
 
