@@ -132,25 +132,11 @@ def test_exported_feet_move_as_the_robot_did_and_rigid_ones_do_not(
     assert torques[2] < 0.5 * torques[0]  # type: ignore[operator]
 
 
-def size(values: Array) -> Array:
-    """Root mean square of each column."""
-    return np.asarray(np.sqrt(np.mean(values**2, axis=0)))
-
-
 @pytest.mark.slow
-def test_scores_are_as_they_are_kept(
-    compared: tuple[tuple[KindScore, ...], tuple[Replayed, ...]],
-) -> None:
-    """And the size of what stands beside the record."""
+def test_scores_are_as_they_are_kept(compared: tuple[tuple[KindScore, ...], tuple[Replayed, ...]]) -> None:
+    """And the root mean squares of what is simulated."""
     scores, replayed = compared
-    sizes = [
-        {
-            "feet": one.feet, "end": one.time[-1], "chest": size(one.chest), "recorded chest": size(one.recorded_chest),
-            "torque": {place: size(torque) for place, torque in one.torque.items()},
-            "recorded torque": {place: size(torque) for place, torque in one.recorded_torque.items()},
-        }
-        for one in replayed
-    ]  # fmt: skip
+    sizes = [[np.sqrt(np.mean(part**2)) for part in (*one.chest.T, *one.torque.values())] for one in replayed]
     told = described({"scores": scores, "sizes": sizes})
     assert_as_kept(told, Path(__file__).parent / "kept" / "scores.txt", share=0.01, least=1e-6)
 
