@@ -150,7 +150,7 @@ DRAWN_TWICE = (
         "an IMU's frame is a force sensor's",
         'find_frame(tree, name, sensors.imus.get(name, "")))',
         'find_frame(tree, name, sensors.wrenches.get(name, "")))',
-        ("robot_guess/test_robot_guess.py",),
+        ("robot_guess/test_imu_frames.py",),
     ),
     Mutant(
         "comparison/tipping.py",

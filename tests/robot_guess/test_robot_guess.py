@@ -38,11 +38,10 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.save import save_log
 from plantar.robot.model import RobotModel, load_robot
-from plantar.robot_guess import _first_draft, guess_robot_file
+from plantar.robot_guess import guess_robot_file
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.feet import find_sole
 from plantar.robot_guess.imu import find_frame
-from plantar.robot_guess.sensors import Sensors
 from renamed_joints import renamed
 from standing_robot import talos_sways
 
@@ -184,14 +183,6 @@ def test_imu_frames_come_before_skins_and_say_what_else_there_is(tmp_path: Path)
     assert find_frame(tree, "chest", "chest").link == "chest", "the frame of its messages"
     assert find_frame(UrdfTree.load(G1), "pelvis", "").link == "imu_in_pelvis"
     assert find_frame(UrdfTree.load(G1), "imu", "").others == ("imu_in_pelvis",)
-
-
-def test_a_first_draft_takes_the_frame_of_the_imus_own_messages() -> None:
-    sensors = Sensors(imus={"torso": "chest", "spare": ""}, wrenches={"torso": "head"})
-    draft = _first_draft(UrdfTree.load(ICUB), [], sensors, ICUB)
-    assert draft.imu is not None
-    assert (draft.imu[0], draft.imu[1].link) == ("torso", "chest")
-    assert draft.imu[1].reason.endswith("; the logs also hold spare")
 
 
 TURNS = [(np.pi, 0.0, 0.0), (0.0, np.pi / 2, 0.0), (0.0, 0.0, np.pi / 2), (0.0, np.pi, np.pi / 2)]
