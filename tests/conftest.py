@@ -42,8 +42,11 @@ HEARD = tuple(
     f"tests/{place}"
     for place in (
         "comparison/", "contact/", "design/", "estimation/", "exporters/", "faults/", "feet/", "fleet/test_manifest",
-        "inspection/", "logs/readers/test_bag_clocks", "logs/readers/test_force_cells", "logs/readers/test_roles",
-        "logs/test_", "model_selection/", "motions/", "online/", "results/", "robot/", "robot_guess/", "sensors/",
+        "fleet/test_plan", "inspection/", "logs/readers/test_bag_clocks", "logs/readers/test_csv_text",
+        "logs/readers/test_force_cells", "logs/readers/test_layouts", "logs/readers/test_plain_numbers",
+        "logs/readers/test_roles", "logs/readers/test_streams", "logs/readers/test_table.py",
+        "logs/readers/test_urdf_names", "logs/test_", "model_selection/",
+        "motions/", "online/", "results/", "robot/", "robot_guess/", "sensors/",
         "signals/", "twin/", "whole_body/",
     )
 )  # fmt: skip
