@@ -255,3 +255,13 @@ def test_a_group_that_a_new_log_joined_is_fitted_again(client: Any, tmp_path: Pa
     done(client, write_manifest(tmp_path / "one.csv", rows[:1]), out)
     both = done(client, write_manifest(tmp_path / "both.csv", rows), out)
     assert (both.reused, both.done) == (0, 1)
+
+
+def test_a_file_for_the_store_is_refused_before_any_worker_is_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    manifest = small_fleet(tmp_path, 1)
+    monkeypatch.setattr("plantar.cli.fleet.run.connected", None)
+    (tmp_path / "taken").write_text("")
+    said = refused(capsys, "fleet", "run", manifest, "--out", tmp_path / "taken")
+    assert said == f"plantar: {tmp_path / 'taken'}: is a file (valid: a folder for the results)"
