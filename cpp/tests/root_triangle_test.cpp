@@ -74,6 +74,17 @@ void run() {
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= N; ++j) check::near(product(faded, i, j), 0.25 * product(all, i, j), 1e-9, "squares of half");
 
+  RootTriangle<N> silent;
+  for (auto& row : rows) {
+    double without[N + 1] = {row[0], 0.0, row[2], 2.0 * row[0] + 0.5 * row[2]};
+    silent.add(without);
+  }
+  double z[N];
+  silent.solve(z);
+  check::near(z[0], 2.0, 1e-9, "beside an unknown that no row has");
+  check::that(z[1] == 0.0, "an unknown that no row has");
+  check::near(z[2], 0.5, 1e-9, "behind an unknown that no row has");
+
   // What a filter leaves of a signal that has ended: its squares vanish.
   RootTriangle<N> empty;
   double tiny[N + 1] = {0.0, 1e-170, 1e-300, 0.0};

@@ -193,6 +193,26 @@ def test_the_demo_prints_its_tables_one_by_one_and_warnings_in_yellow(
     assert lines[-4:] == [str(tmp_path / "result.json"), "R [b]", "S", str(tmp_path / "figures")]
 
 
+@pytest.mark.parametrize("quiet", [True, False])
+def test_a_quiet_demo_says_nothing_of_its_progress(
+    quiet: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def played(*given: object) -> object:
+        step = given[-1]
+        step("play 2 motions on the twin: 5 %")  # type: ignore[operator]
+        step("fit z")  # type: ignore[operator]
+        return SimpleNamespace(result=SimpleNamespace(notes=()))
+
+    monkeypatch.setattr(plantar.campaign, "run_campaign", played)
+    made_up(monkeypatch, present, write_campaign_report=SimpleNamespace(report="R", scene="S"))
+    made_up(monkeypatch, campaign_tables, tables=())
+    demo.run(tmp_path, quiet=quiet)
+    said = capsys.readouterr()
+    assert ("play 2 motions" in said.err) is not quiet
+    assert "fit z" not in said.err, "it takes no time"
+    assert (said.out == "") is quiet
+
+
 def test_a_command_that_is_interrupted_says_so(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -205,3 +205,16 @@ atexit.register(lambda: print("FROZEN:", gc.get_freeze_count() > 10_000))
 main(["--version"])
 """
     assert "FROZEN: True" in python(code)
+
+
+@pytest.mark.parametrize(
+    ("group", "commands"), [("identify", ("feet", "inertia")), ("fleet", ("plan", "report"))]
+)
+def test_a_group_alone_shows_its_commands(
+    group: str, commands: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(group)
+    said = "".join(capsys.readouterr())
+    assert "Missing command" not in said
+    for command in commands:
+        assert f" {command} " in said

@@ -13,6 +13,7 @@ import pytest
 
 import plantar
 from command_line import run
+from kept_texts import assert_as_kept, described
 from plantar.comparison import compare as comparison
 from plantar.comparison import scenes as scene_module
 from plantar.comparison.compare import KindScore, compare, pooled
@@ -129,6 +130,15 @@ def test_exported_feet_move_as_the_robot_did_and_rigid_ones_do_not(
     torques = [scores[kind].torque for kind in KINDS]
     assert torques[1] < 0.2 * torques[0]  # type: ignore[operator]
     assert torques[2] < 0.5 * torques[0]  # type: ignore[operator]
+
+
+@pytest.mark.slow
+def test_scores_are_as_they_are_kept(compared: tuple[tuple[KindScore, ...], tuple[Replayed, ...]]) -> None:
+    """And the root mean squares of what is simulated."""
+    scores, replayed = compared
+    sizes = [[np.sqrt(np.mean(part**2)) for part in (*one.chest.T, *one.torque.values())] for one in replayed]
+    told = described({"scores": scores, "sizes": sizes})
+    assert_as_kept(told, Path(__file__).parent / "kept" / "scores.txt", share=0.01, least=1e-6)
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.comparison.tipping import on_an_edge
+from plantar.conventions import rotation_from_rpy
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.twin.robots import hrp2
 
@@ -39,6 +40,23 @@ def test_a_sole_that_stands_on_its_edge_is_told_with_its_time(forward: float, le
 def test_a_sole_that_stands_inside_its_edges_or_in_the_air_is_not() -> None:
     assert on_an_edge(hrp2.robot(), standing(FRONT - 0.01, 0.0)) is None
     assert on_an_edge(hrp2.robot(), standing(FRONT, 0.0, load=5.0)) is None
+
+
+def test_a_sensor_that_sits_aside_and_turned_says_the_same() -> None:
+    robot, log = hrp2.robot(), standing(FRONT, 0.0)
+    xyz, rpy, feet, columns = np.array([0.03, -0.04, 0.05]), np.array([0.4, -0.3, 1.1]), {}, {}
+    turn = rotation_from_rpy(rpy)
+    for name, foot in robot.feet.items():
+        place = foot.wrench.placement
+        assert not place.rpy.any()
+        moved = replace(place, xyz=place.xyz + xyz, rpy=rpy)
+        feet[name] = replace(foot, wrench=replace(foot.wrench, placement=moved))
+        force, torque = np.split(log.wrench(foot.wrench.name), 2, axis=1)
+        torque = torque - foot.wrench.sign * np.cross(xyz, foot.wrench.sign * force)
+        read = np.hstack([force @ turn, torque @ turn])
+        columns |= dict(zip(wrench_columns(foot.wrench.name), read.T, strict=True))
+    found = on_an_edge(replace(robot, feet=feet), replace(log, columns=columns))
+    assert found == pytest.approx(on_an_edge(robot, log))
 
 
 def test_a_sensor_that_reads_the_opposite_says_the_same() -> None:

@@ -56,6 +56,36 @@ def test_a_pendulum_keeps_what_textbooks_keep() -> None:
     assert base_parameters(Equation(pendulum())).names == ("hinge.mx", "hinge.my", "hinge.Izz")
 
 
+def bolted(kinds: tuple[object, ...]) -> pin.Model:
+    """An arm whose joints all have the base's axes."""
+    pin.seed(2)
+    model, parent = pin.Model(), 0
+    for place, kind in enumerate(kinds):
+        about = pin.SE3(np.eye(3), np.array([0.2, 0.1, 0.3]))
+        parent = model.addJoint(parent, kind, about, f"joint {place}")
+        model.appendBodyToJoint(parent, pin.Inertia.Random(), pin.SE3.Identity())
+    return model
+
+
+@pytest.mark.parametrize(
+    "kinds",
+    [
+        (pin.JointModelRZ(), pin.JointModelRZ(), pin.JointModelPZ()),
+        (pin.JointModelPZ(), pin.JointModelRZ(), pin.JointModelRZ()),
+        (pin.JointModelPX(), pin.JointModelRZ(), pin.JointModelRZ(), pin.JointModelPZ()),
+    ],
+)
+def test_what_a_fixed_base_hides_is_lumped(kinds: tuple[object, ...]) -> None:
+    """Of a SCARA and gantries some parameters act in fixed sums alone, though each has a column."""
+    model = bolted(kinds)
+    base = base_parameters(Equation(model))
+    y = regressor(model, *random_motion(model, 60, 1))
+    y = y.reshape(-1, y.shape[2])
+    singular = np.linalg.svd(y, compute_uv=False)
+    assert len(base) == np.sum(singular > 1e-9 * singular[0])
+    np.testing.assert_allclose(y[:, base.kept] @ base.grouping, y, atol=1e-9 * np.abs(y).max())
+
+
 def test_an_expression_says_what_is_lumped() -> None:
     """Two parallel hinges, 0.3 m apart: the second link's mass adds to the first one's moments."""
     model = pendulum()

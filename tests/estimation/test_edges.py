@@ -18,7 +18,7 @@ from plantar.estimation.errors_in_variables import attenuation, noise_after_filt
 from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.residual_covariance import pooled_freedom, relative_std_percent, score_cosines
 from plantar.estimation.slow_drift import drift_basis, drift_beside
-from plantar.estimation.stance_problem import StanceProblem
+from plantar.estimation.stance_problem import StanceProblem, _scaled_inverse
 from plantar.estimation.triangular import TriangularFactor
 from plantar.estimation.weighted_mean import weighted_mean
 
@@ -251,3 +251,17 @@ def test_a_factor_without_parameters_and_one_of_dependent_columns() -> None:
     assert twice.condition_number > 1e12
     scaled = TriangularFactor.of(np.array([[1e6, 0, 1], [0, 1e-6, 2], [0, 0, 0]]))
     assert (scaled.rank, scaled.condition_number) == (2, pytest.approx(1.0))
+
+
+@pytest.mark.parametrize("units", [(1.0, 1e-4, 1e3), (1e-9, 1e-9, 1e-9), (1e6, 1e-2, 1.0)])
+def test_an_inverse_is_the_same_in_any_units(units: tuple[float, ...]) -> None:
+    """Also of a column that holds nothing, and of one that is another's share."""
+    columns = np.random.default_rng(6).standard_normal((20, 3))
+    whole, outer = columns.T @ columns, np.outer(units, units)
+    np.testing.assert_allclose(_scaled_inverse(whole * outer) * outer, np.linalg.inv(whole), rtol=1e-9)
+    for last in (np.zeros(20), 0.5 * columns[:, 0]):
+        columns[:, 2] = last
+        less = columns.T @ columns
+        np.testing.assert_allclose(
+            _scaled_inverse(less * outer) * outer, _scaled_inverse(less), rtol=1e-7, atol=1e-9
+        )

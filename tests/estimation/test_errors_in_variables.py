@@ -12,7 +12,14 @@ from biped import TRUTH, record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_linear
-from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved, slow_share
+from plantar.estimation.blocks import StanceRows
+from plantar.estimation.errors_in_variables import (
+    attenuation,
+    noise_after_filter,
+    offsets_moved,
+    slow_attenuation,
+    slow_share,
+)
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -52,6 +59,24 @@ def test_what_slow_errors_may_have_drawn_a_value_by(drawn: float, beside: float,
     one = Block("sway", np.column_stack([angle, rate]), torque, PERIOD)
     left = torque - 400.0 * angle
     assert slow_share(one, left, 400.0) == pytest.approx(share, rel=0.05, abs=1e-4)
+
+
+def test_of_one_offset_all_that_goes_along_parabolas_of_stances_may_be_taken() -> None:
+    """By hand: least squares with one offset, what they leave, and a parabola through it in each of four stances."""
+    random, count = np.random.default_rng(7), 400
+    x = np.column_stack([random.standard_normal(count).cumsum() / 10, random.standard_normal(count)])
+    y = x @ VALUES + 3.0 + random.standard_normal(count).cumsum() / 5
+    number = np.repeat(np.arange(4), count // 4)
+    one = Block("walk", x, y, PERIOD, stances=StanceRows(number, np.ones(count)))
+    whole = np.column_stack([x, np.ones(count)])
+    left = y - whole @ np.linalg.lstsq(whole, y, rcond=None)[0]
+    beside = 0.0
+    for stance in range(4):
+        own, time = left[number == stance], np.arange(count // 4)
+        beside += float(np.sum((own - np.polyval(np.polyfit(time, own, 2), time)) ** 2))
+    wanted = np.linalg.inv(whole.T @ whole)[:2, 0] * (left @ left - beside) / 400.0
+    assert slow_attenuation([one], 400.0, shared_offset=True) == pytest.approx(wanted)
+    assert slow_attenuation([one], 400.0) != pytest.approx(wanted, rel=0.1), "each stance has its own"
 
 
 def behind_filter(values: Array) -> float:

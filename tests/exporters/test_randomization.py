@@ -37,6 +37,23 @@ def ranges(feet: dict[str, Any], folder: Path) -> tuple[dict[str, Any], dict[str
     return made, {row["name"]: place for place, row in enumerate(made["parameters"])}
 
 
+@pytest.mark.parametrize(
+    ("latency", "known"),
+    [
+        ({"wrench_delay": 0.005, "std": 0.002}, True),
+        ({"wrench_delay": 0.005, "std": None}, False),
+        ({"wrench_delay": None, "std": 0.002}, False),
+        ({}, False),
+        (None, False),
+    ],
+)
+def test_a_delay_without_its_deviation_is_no_range(
+    latency: dict[str, float | None] | None, known: bool, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    feet["latency"] = latency
+    assert ("wrench.delay" in ranges(feet, tmp_path)[1]) is known
+
+
 def test_numbers_that_share_a_cause_are_correlated(feet: dict[str, Any], tmp_path: Path) -> None:
     made, place = ranges(feet, tmp_path)
     matrix = np.array(made["correlation"])

@@ -106,7 +106,12 @@ def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Pa
         rows += [{"link": link, "name": name, "unit": "", "value": float(value), "cad": 0.0}
                  for name, value in zip(INERTIAL_NAMES, values, strict=True)]  # fmt: skip
     made = {"schema": "plantar.inertia/1", "robot": "biped", "plantar": "0.1.0", "inertial_parameters": rows}
-    export(made, "urdf", tmp_path / "identified.urdf", model=urdf)
+    notes = export(made, "urdf", tmp_path / "identified.urdf", model=urdf)
+    assert {note.code for note in notes} == {"export_inertia", "export_lumped"}
+    text = (tmp_path / "identified.urdf").read_text()
+    assert "Inertias of 'biped', identified by plantar 0.1.0." in text
+    for note in notes:
+        assert f"{note.severity}: {note.text}" in text, "it is told in the file too"
     again = pin.buildModelFromUrdf(str(tmp_path / "identified.urdf"), pin.JointModelFreeFlyer())
     for joint, values in wanted.items():
         np.testing.assert_allclose(again.inertias[joint].toDynamicParameters(), values, rtol=1e-9, atol=1e-9)

@@ -6,6 +6,7 @@ import json
 import math
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 from command_line import run
 from export_robots import CENTRE, TRUTH, bush_rotation, result, write_urdf
 from plantar.exporters import export
+from plantar.exporters.usd.stage import standing_shapes
 from pushed_foot import DIRECTION, LOAD, check, joint_name, other_python
 from usd_stage import write_usd
 
@@ -45,6 +47,27 @@ def test_the_validators_of_usd_find_nothing(kind: str, tmp_path: Path) -> None:
     validators = validation.ValidationRegistry().GetOrLoadAllValidators()
     found = validation.ValidationContext(validators).Validate(stage)
     assert not [one.GetErrorAsString() for one in found]
+
+
+@pytest.mark.parametrize(
+    ("place", "height", "stands"),
+    [(0.0, 0.2, True), (0.0, 0.1, False), (-0.1, 0.02, True), (0.1, 0.02, False), (0.1, 0.41, True)],
+)
+def test_shapes_that_reach_the_sole_are_those_that_stand(place: float, height: float, stands: bool) -> None:
+    """The sole 0.1 m below the ankle, the bush 0.04 m above it: what comes within 0.02 m, wherever its middle is."""
+    from pxr import Gf, Usd, UsdGeom, UsdPhysics
+
+    stage = Usd.Stage.CreateInMemory()
+    ankle = UsdGeom.Xform.Define(stage, "/ankle")
+    ankle.AddTranslateOp().Set(Gf.Vec3d(3.0, -2.0, 5.0))
+    shape = UsdGeom.Cube.Define(stage, "/ankle/shape")
+    shape.CreateSizeAttr(1.0)
+    shape.AddTranslateOp().Set(Gf.Vec3d(0.05, 0.0, place))
+    shape.AddScaleOp().Set(Gf.Vec3f(0.2, 0.1, height))
+    foot = SimpleNamespace(centre=np.array([0.0, 0.0, -0.06]), rotation=np.eye(3), sole_depth=0.04)
+    assert standing_shapes(ankle.GetPrim(), foot) == []  # type: ignore[arg-type]
+    UsdPhysics.CollisionAPI.Apply(shape.GetPrim())
+    assert bool(standing_shapes(ankle.GetPrim(), foot)) is stands  # type: ignore[arg-type]
 
 
 def test_a_foots_name_need_be_no_name_of_usd(tmp_path: Path) -> None:

@@ -53,6 +53,22 @@ def small(log: MotionLog, share: float = 0.01) -> MotionLog:
     return changed(log.with_columns(dict(zip(names, quaternions, strict=True))), rates)
 
 
+@pytest.mark.parametrize(("factor", "found"), [(1.0, []), (57.3, ["degrees"]), (1.2, ["gyroscope_scale"])])
+def test_what_is_read_while_the_robot_stands_does_not_count(
+    log: MotionLog, factor: float, found: list[str]
+) -> None:
+    """It stands for three quarters of the time after whole swings; its gyroscope is less noisy than its attitude."""
+    random, names = np.random.default_rng(1), [f"imu.chest.orientation.{part}" for part in "wxyz"]
+    moves = (log.time < 10.0)[:, None]
+    noise = 1e-3 * random.standard_normal((len(log), 3))
+    rates = np.where(moves, log.stack(GYROSCOPE), 0.0) + 0.02 * noise
+    turn = Rotation.from_quat(log.stack(names), scalar_first=True).as_rotvec()
+    last = turn[np.flatnonzero(moves)[-1]]
+    read = Rotation.from_rotvec(noise) * Rotation.from_rotvec(np.where(moves, turn, last))
+    made = log.with_columns(dict(zip(names, read.as_quat(scalar_first=True).T, strict=True)))
+    assert codes(changed(made, factor * rates)) == found
+
+
 @pytest.mark.parametrize(
     ("factor", "found"),
     [

@@ -67,6 +67,14 @@ def test_no_sign_is_advised_where_sensors_were_zeroed_under_load(robot: RobotMod
     assert "set 'sign" not in found.text
 
 
+def test_samples_that_one_foot_lacks_say_nothing_of_the_exchange(robot: RobotModel) -> None:
+    loads = {"left": 1.5 * (LEFT - WEIGHT / 2), "right": 1.5 * (WEIGHT / 2 - LEFT)}
+    loads["left"][100:140] = np.nan
+    loads["right"][500:520] = np.nan
+    (found,) = check_load_signs(robot, loads)
+    assert found.code == "zeroed_under_load"
+
+
 @pytest.mark.parametrize("right", [0.7, 1.0])
 def test_a_foot_in_the_air_that_pulls_has_a_zero_and_no_reversed_sign(
     robot: RobotModel, right: float

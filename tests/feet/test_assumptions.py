@@ -15,7 +15,7 @@ from biped_robot import FEET, Frame, Mounting
 from feet_trials import noisy, shifted
 from plantar.conventions import NORMAL95
 from plantar.feet.assess.diagnosis import REMEDY
-from plantar.feet.assumptions import CAUSES, assumptions
+from plantar.feet.assumptions import CAUSES, _bending, assumptions
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width.between_recordings import Apart
 from plantar.feet.prepare import PreparedLogs
@@ -149,3 +149,13 @@ def test_of_an_exact_robot_nothing_is_said_that_may_not_be_wrong(robot: RobotMod
     log = noisy(record(sway("sway", 3, duration=20.0)), 3)
     cells = assumption_cells(identify_feet(robot, [log], settings=SETTINGS).assumptions)
     assert {line[0] for line in cells if line[0]} <= {"wrench_gain", "wrench_delay", "between_recordings"}
+
+
+def test_the_bend_of_legs_is_told_with_its_deviation() -> None:
+    def of(mean: float | None) -> list[tuple[str, float, float]]:
+        ready = SimpleNamespace(bending=SimpleNamespace(mean=mean, std=2e-6))
+        return [tuple(one) for one in _bending(cast(PreparedLogs, ready))]  # type: ignore[arg-type]
+
+    assert of(1.5e-5) == [("legs' joints together", 1.5e-5, 2e-6)]
+    assert of(0.0) == [("legs' joints together", 0.0, 2e-6)]
+    assert of(None) == []

@@ -14,6 +14,7 @@ import pytest
 from biped import VERTICAL, record, sway
 from feet_trials import PUNCTUAL
 from plantar.errors import DataError, LogError
+from plantar.feet import prepare
 from plantar.feet.first_look import checked_in_turn
 from plantar.feet.fit.vertical_stiffness import fit_vertical_stiffness
 from plantar.feet.prepare import PreparedLogs, prepare_all, prepare_unseen
@@ -44,6 +45,30 @@ def test_each_log_has_its_role_and_the_cutoff_that_was_used(robot: RobotModel, l
     ]  # fmt: skip
     assert {one.cutoff for one in found.recordings} == {found.settings.cutoff} == {4.0}
     assert 0 < (prepared(robot, logs).settings.cutoff or 0) <= PUNCTUAL.highest_cutoff
+
+
+def test_gains_of_legs_that_do_not_bend_are_told_without_any_bend(
+    robot: RobotModel, logs: list[MotionLog], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Legs that may bend are asked first; beside them a gain is less sure."""
+    asked: list[tuple[tuple[object, ...], object]] = []
+    told: list[object] = []
+    moments, gains = prepare.moments_of, prepare.torque_gains
+
+    def of(robot: RobotModel, *given: object) -> object:
+        asked.append((given, moments(robot, *given)))  # type: ignore[arg-type]
+        return asked[-1][1]
+
+    def of_gains(robot: RobotModel, fit: object) -> object:
+        told.append(fit)
+        return gains(robot, fit)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(prepare, "moments_of", of)
+    monkeypatch.setattr(prepare, "torque_gains", of_gains)
+    assert not prepared(robot, logs).bending.found
+    (first, _), (second, stiff) = asked
+    assert first == (*second, prepare.BENDING)
+    assert told == [stiff]
 
 
 def test_a_given_delay_is_taken_and_undone(robot: RobotModel, logs: list[MotionLog]) -> None:

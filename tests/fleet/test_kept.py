@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from fleet_samples import broken_logs, make_logs, write_manifest
 from fleet_tables import changing_fleet, failures, results, row
 from kept_texts import assert_as_kept, described, lines_of
-from plantar.cli.fleet.report import print_summary
+from plantar.cli.fleet.report import print_summary, write_report
+from plantar.cli.fleet.run import counts
+from plantar.feet.settings import FeetSettings
+from plantar.fleet.manifest import read_manifest
+from plantar.fleet.places import Store
+from plantar.fleet.run import Progress, run_fleet
 from plantar.fleet.statistics.changes import history_of
 from plantar.fleet.statistics.random_effects import mean_of, nested_means
 from plantar.fleet.statistics.trend import trend_of
 from plantar.fleet.summary import summary_of
+from plantar.fleet.tables import read_failures, read_groups, read_results
 from plantar.twin.fleet import stories
 
 KEPT = Path(__file__).parent / "kept"
@@ -63,3 +72,46 @@ def test_histories_and_effects_are_as_they_are_kept() -> None:
     told["means"] = nested_means(made["step"][24:36], 1e-4 * weights[:12], days, units)
     told["mean"] = mean_of(made["step"][24:36], 1e-4 * weights[:12], 2e-4)
     assert_as_kept(described(told), KEPT / "histories.txt", share=1e-5)
+
+
+ROWS = (
+    ("a", "robot.yaml", "log_0.parquet", "fit", "2026-03-01T10:00:00Z", "unit 1"),
+    ("a", "robot.yaml", "log_1.parquet", "validate", "2026-03-01T10:00:00Z", "unit 1"),
+    ("b", "robot.yaml", "log_1.parquet", "fit", "2026-03-02T11:30:00Z", "unit 2"),
+    ("b", "robot.yaml", "empty.parquet", "fit", "2026-03-02T11:30:00Z", "unit 2"),
+    ("b", "robot.yaml", "gone.parquet", "validate", "2026-03-02T11:30:00Z", "unit 2"),
+    ("c", "robot.yaml", "log_2.parquet", "", "", ""),
+    ("c", "robot.yaml", "deaf.parquet", "", "", ""),
+    ("c", "robot.yaml", "short.parquet", "validate", "", ""),
+    ("e", "robot.yaml", "timeless.parquet", "", "2026-03-04", "unit 1"),
+    ("f", "nowhere.yaml", "log_0.parquet", "", "", "unit 2"),
+    ("g", "again.yaml", "log_2.parquet", "", "2026-03-05T01:00:00+02:00", "unit 2"),
+)  # fmt: skip
+
+
+def test_a_run_is_as_it_is_kept(client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Groups of which logs are broken, gone, or only to validate: twice, then with all logs there; tables and words."""
+    make_logs(tmp_path, 3)
+    broken_logs(tmp_path)
+    robot, store = tmp_path / "robot.yaml", Store(str(tmp_path / "out"))
+    (tmp_path / "again.yaml").write_text(robot.read_text() + "# of another robot\n")
+    groups = read_manifest(write_manifest(tmp_path / "fleet.csv", ROWS))
+    settings, told = FeetSettings(model="kelvin_voigt", wrench_delay=0.0), dict[str, Any]()
+    for run in ("first", "second", "with all logs"):
+        if run == "with all logs":
+            (tmp_path / "log_0.parquet").rename(tmp_path / "gone.parquet")
+            monkeypatch.setattr("plantar.fleet.run.QUEUED", 1)
+        seen: list[Progress] = []
+        outcome = run_fleet(groups, store, settings, client, seen.append)
+        rows = [asdict(row) | {"key": len(row.key)} for row in read_groups(store)]
+        summary = write_report(store, 2.0)
+        found, last = read_results(store).to_pylist(), seen[-1]
+        told[run] = {
+            "reused": outcome.reused, "done": outcome.done, "written": outcome.written, "groups": rows,
+            "last": [last.total, last.reused, last.done, last.failed], "units": len(store.names("units")),
+            "results": found if run == "first" else np.array([row["value"] for row in found]),
+            "failures": read_failures(store).to_pylist(), "counts": counts(outcome),
+            "alarms": [alarm.text for alarm in summary.alarms],
+            "reasons": [(one.count, one.example) for one in summary.failures],
+        }  # fmt: skip
+    assert_as_kept(described(told).replace(str(tmp_path), "FOLDER"), KEPT / "run.txt", share=1e-5)

@@ -99,6 +99,17 @@ def test_a_folder_has_a_stamp_and_a_content(tmp_path: Path) -> None:
     assert content_sha256(tmp_path / "one") != content_sha256(tmp_path / "two")
 
 
+def test_a_folders_content_is_that_of_its_folders_too(tmp_path: Path) -> None:
+    for name, text in (("one", "a"), ("two", "b")):
+        (tmp_path / name / "within").mkdir(parents=True)
+        (tmp_path / name / "within" / "part.db3").write_text(text)
+    assert content_sha256(tmp_path / "one") != content_sha256(tmp_path / "two")
+    (tmp_path / "two" / "within" / "part.db3").write_text("a")
+    assert content_sha256(tmp_path / "one") == content_sha256(tmp_path / "two")
+    (tmp_path / "two" / "within").rename(tmp_path / "two" / "elsewhere")
+    assert content_sha256(tmp_path / "one") != content_sha256(tmp_path / "two")
+
+
 def test_remote_files_are_brought_under_their_name(tmp_path: Path) -> None:
     system = fsspec.filesystem("memory")
     system.pipe_file("/logs/day.csv", b"time\n")

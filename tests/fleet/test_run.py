@@ -14,7 +14,7 @@ import pytest
 
 from biped import TRUTH
 from command_line import refused, run
-from fleet_samples import broken_logs, make_logs, small_fleet, write_manifest
+from fleet_samples import broken_logs, make_logs, short_log, small_fleet, write_manifest
 from plantar.errors import PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
@@ -23,6 +23,7 @@ from plantar.fleet.places import PlaceError, Store
 from plantar.fleet.robots import robot_at
 from plantar.fleet.run import Outcome, run_fleet
 from plantar.fleet.work import Task, compute
+from plantar.logs.save import save_log
 
 SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
 
@@ -82,6 +83,9 @@ def test_content_counts_not_the_place_or_the_date(client: Any, tmp_path: Path) -
     robot = tmp_path / "robot.yaml"
     robot.write_text(robot.read_text() + "\n# measured again\n")
     assert done(client, moved, out).reused == 0
+    save_log(short_log(1), tmp_path / "elsewhere" / log.name)  # recorded anew
+    assert done(client, moved, out).reused == 0
+    assert done(client, moved, out).reused == 1
 
 
 def test_broken_logs_of_ten_kinds_are_told_and_do_no_harm(client: Any, tmp_path: Path) -> None:
@@ -251,3 +255,13 @@ def test_a_group_that_a_new_log_joined_is_fitted_again(client: Any, tmp_path: Pa
     done(client, write_manifest(tmp_path / "one.csv", rows[:1]), out)
     both = done(client, write_manifest(tmp_path / "both.csv", rows), out)
     assert (both.reused, both.done) == (0, 1)
+
+
+def test_a_file_for_the_store_is_refused_before_any_worker_is_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    manifest = small_fleet(tmp_path, 1)
+    monkeypatch.setattr("plantar.cli.fleet.run.connected", None)
+    (tmp_path / "taken").write_text("")
+    said = refused(capsys, "fleet", "run", manifest, "--out", tmp_path / "taken")
+    assert said == f"plantar: {tmp_path / 'taken'}: is a file (valid: a folder for the results)"

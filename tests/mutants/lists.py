@@ -17,6 +17,7 @@ from drawn_by_lot import DRAWN_BY_LOT
 from drawn_everywhere import DRAWN_EVERYWHERE
 from drawn_last import DRAWN_LAST
 from drawn_once_more import DRAWN_ONCE_MORE
+from drawn_twice import DRAWN_TWICE
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
@@ -68,4 +69,5 @@ LISTS = {
     "kept_outputs": KEPT,
     "kept_parts": KEPT_PARTS,
     "drawn_by_hand": DRAWN_BY_HAND,
+    "drawn_twice": DRAWN_TWICE,
 }

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
@@ -58,6 +59,30 @@ def test_it_is_served_here_alone_and_says_nothing_on_stdout(
         assert not view.wait_for_reader(0.0)
         show(view, replay)
     assert capsys.readouterr().out == ""
+
+
+def test_a_log_is_shown_as_fast_as_it_was_recorded(replay: Replay, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever it takes to show a sample, and however long the log's clock had run."""
+    now, shown = 50.0, list[tuple[float, float, dict[str, Any]]]()
+
+    def sleep(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+
+    def show(moment: float, estimates: dict[str, Any]) -> None:
+        nonlocal now
+        now += 0.01 if len(shown) != 3 else 0.5  # that one takes longer than its turn
+        shown.append((now, moment, estimates))
+
+    monkeypatch.setattr(live.time, "monotonic", lambda: now)
+    monkeypatch.setattr(live.time, "sleep", sleep)
+    live.play(SimpleNamespace(show=show), replay)  # type: ignore[arg-type]
+    first = float(replay.time[0])
+    assert len(shown) == pytest.approx((replay.time[-1] - first) / live.FRAME, abs=1.5)
+    for at, moment, estimates in [*shown[:3], *shown[-20:]]:
+        assert at - 50.0 == pytest.approx(moment - first + 0.01, abs=replay.time[1] - first + 1e-6)
+        sample = int(np.argmin(np.abs(replay.time - moment)))
+        assert estimates == {foot: replay.estimate(foot, sample) for foot in replay.feet}
 
 
 def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, replay: Replay) -> None:

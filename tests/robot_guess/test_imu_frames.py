@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from example_robots import ICUB
 from plantar.conventions import Array, rotation_from_rpy
+from plantar.exporters.urdf.tree import UrdfTree
+from plantar.robot_guess import _first_draft
 from plantar.robot_guess.imu import Mount, turned_to_gravity
+from plantar.robot_guess.sensors import Sensors
 from plantar.robot_guess.stance import Stance
 
 SAMPLES = 200
@@ -52,3 +56,11 @@ def test_angles_between_imu_and_soles_are_told_in_degrees() -> None:
         reason = leaning(0.0, felt).reason
         assert float(reason.split(before)[1].split(after)[0]) == pytest.approx(felt, abs=0.5)
     assert np.abs(np.degrees(leaning(0.0, 90.0).rpy)).max() == 90.0
+
+
+def test_a_first_draft_takes_the_frame_of_the_imus_own_messages() -> None:
+    sensors = Sensors(imus={"torso": "chest", "spare": ""}, wrenches={"torso": "head"})
+    draft = _first_draft(UrdfTree.load(ICUB), [], sensors, ICUB)
+    assert draft.imu is not None
+    assert (draft.imu[0], draft.imu[1].link) == ("torso", "chest")
+    assert draft.imu[1].reason.endswith("; the logs also hold spare")

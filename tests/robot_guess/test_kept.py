@@ -38,10 +38,44 @@ CHANGES: dict[str, Callable[[MotionLog], MotionLog]] = {
     "feet exchanged": lambda log: MotionLog(
         log.name, log.time, {_other(name): values for name, values in log.columns.items()}
     ),
+    "two imus": lambda log: log.with_columns(
+        {name.replace("chest", "spare"): np.roll(v, 3) for name, v in log.columns.items() if name.startswith("imu.")}
+    ),
+    "lifting": lambda log: log.with_columns(
+        {name: np.where((log.time > 4) & (log.time < 6), 0.0, v) for name, v in log.columns.items()
+         if name.startswith("wrench.left")}
+    ),
+    "heavier": lambda log: log.with_columns(
+        {name: 1.3 * v for name, v in log.columns.items() if name.startswith("wrench.")}
+    ),
     "zeroed under load": lambda log: log.with_columns(
         {name: log.column(name) - log.column(name)[0] for name in log.columns if name.startswith("wrench.")}
     ),
 }  # fmt: skip
+
+
+# On the left a frame that is called a force sensor, on the right one of the sensor's own name.
+FRAMES = """
+<link name="left_ft_sensor"/><joint name="left_seat" type="fixed"><parent link="left_foot"/>
+  <child link="left_ft_sensor"/><origin xyz="0.01 0.02 -0.03" rpy="0 0 0.2"/></joint>
+<link name="right"/><joint name="right_seat" type="fixed"><parent link="right_foot"/>
+  <child link="right"/><origin xyz="-0.01 0 -0.02"/></joint>
+</robot>"""
+
+
+# Boxes under the feet: one stands aside, the other is thicker.
+SHAPES = """
+<link name="left_pad"><collision><origin xyz="0.02 0.01 0"/><geometry><box size="0.22 0.13 0.02"/></geometry>
+  </collision></link>
+<joint name="left_under" type="fixed"><parent link="left_foot"/><child link="left_pad"/>
+  <origin xyz="0 0 -0.08"/></joint>
+<link name="right_pad"><collision><geometry><box size="0.24 0.12 0.04"/></geometry></collision></link>
+<joint name="right_under" type="fixed"><parent link="right_foot"/><child link="right_pad"/>
+  <origin xyz="0 0 -0.07"/></joint>
+</robot>"""
+
+
+URDFS = {"frames of sensors": FRAMES, "boxes": SHAPES}
 
 
 def _other(name: str) -> str:
@@ -50,8 +84,8 @@ def _other(name: str) -> str:
     return name.replace("left", "right") if "left" in name else name.replace("right", "left")
 
 
-def guessed(folder: Path, logs: list[MotionLog]) -> str:
-    (folder / "biped.urdf").write_text(URDF)
+def guessed(folder: Path, logs: list[MotionLog], urdf: str) -> str:
+    (folder / "biped.urdf").write_text(urdf)
     files = [folder / f"{log.name}.csv" for log in logs]
     for file, log in zip(files, logs, strict=True):
         save_log(log, file)
@@ -63,9 +97,10 @@ def guessed(folder: Path, logs: list[MotionLog]) -> str:
         return f"{error}\n".replace(str(folder), "FOLDER")
 
 
-@pytest.mark.parametrize("name", [*MOUNTINGS, *CHANGES])
+@pytest.mark.parametrize("name", [*MOUNTINGS, *CHANGES, *URDFS])
 def test_a_guess_is_as_it_is_kept(name: str, tmp_path: Path) -> None:
     mounting = MOUNTINGS.get(name, Mounting())
     logs = [noisy(record(sway(f"log_{seed}", seed, 12.0, shift=0.3), mounting), seed) for seed in (1, 2)]
     logs = [CHANGES[name](log) if name in CHANGES else log for log in logs]
-    assert_as_kept(guessed(tmp_path, logs), KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)
+    urdf = URDF.replace("</robot>", URDFS.get(name, "</robot>"))
+    assert_as_kept(guessed(tmp_path, logs, urdf), KEPT / f"{name.replace(' ', '_')}.txt", share=1e-3)

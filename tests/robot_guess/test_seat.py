@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from plantar.robot_guess.seat import Seat, pressure
+from biped_robot import URDF
+from plantar.exporters.urdf.tree import UrdfTree
+from plantar.robot_guess.seat import Seat, is_fixed, pressure
 
 DEPTH = -0.09  # m: where the sole's plane lies in the foot's axes
 
@@ -28,3 +31,10 @@ def test_the_centre_of_pressure_is_where_the_force_passes_through_the_sole(sign:
     wrench = sign * np.concatenate([axes.T @ upright @ force, axes.T @ torque])
     found = pressure(seat, SimpleNamespace(upright=upright, depth=DEPTH), wrench[None], pose)  # type: ignore[arg-type]
     assert found[0] == pytest.approx([0.05, -0.02, 500.0])
+
+
+def test_a_frame_beyond_a_joint_or_of_no_link_is_not_fixed_to_the_ankle(tmp_path: Path) -> None:
+    (tmp_path / "biped.urdf").write_text(URDF)
+    tree = UrdfTree.load(tmp_path / "biped.urdf")
+    frames = ("left_foot", "left_sole", "torso", "right_foot", "nowhere")
+    assert [is_fixed(tree, "left_foot", frame) for frame in frames] == [True, True, False, False, False]

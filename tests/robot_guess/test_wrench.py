@@ -56,6 +56,24 @@ def test_of_axes_that_tell_the_same_those_without_a_turned_sign_are_taken(
     assert left == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("given", [(), ("left",), ("left", "right")])
+def test_axes_that_messages_give_keep_on_all_feet(given: tuple[str, ...]) -> None:
+    """Only where all are guessed the foot's axes are tried; of the link's the reading points down."""
+    seats = {
+        side: Seat(side, np.zeros(3), np.eye(3), f"at the ankle's origin, in {ORIGIN}", side not in given, 0.0, 0.05)
+        for side in SIDES
+    }  # fmt: skip
+    soles = [
+        SimpleNamespace(limb=SimpleNamespace(side=side, link=side), upright=DOWN, depth=-0.05)
+        for side in SIDES
+    ]
+    poses = {side: np.eye(4) for side in SIDES}
+    found, _ = seats_by_log(seats, soles, standing(300.0), None, poses)  # type: ignore[arg-type]
+    for side in SIDES:
+        np.testing.assert_allclose(found[side].rotation, np.eye(3) if given else DOWN, atol=1e-12)
+        assert found[side].sign == (-1 if given else 1)
+
+
 def test_a_torque_of_the_feet_is_a_moment_arm_of_the_load() -> None:
     """3 N·m about y at each foot of 300 N: the load passes 1 cm beside the centre of mass."""
     seats = {side: Seat(side, np.zeros(3), DOWN, "", True, 0.0) for side in SIDES}

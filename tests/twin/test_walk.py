@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from kept_texts import assert_as_kept, described
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.logs.readers import open_log
@@ -64,6 +66,25 @@ def test_a_walk_stays_upright_and_lands_from_foot_to_foot() -> None:
     assert turns == ["right", "left"]  # the left foot steps first
     total = load(rollout, "left") + load(rollout, "right")
     assert total.max() < 2 * weight  # lands, but does not stamp
+
+
+def test_a_walk_is_as_it_is_kept() -> None:
+    """Its plan, and how large all is that the robot does and feels."""
+    plan, rollout = walk(), walked()
+    sizes = {
+        "joints": size(rollout.positions), "rates": size(rollout.velocities), "efforts": size(rollout.efforts),
+        "base": size(rollout.base), "sensors": {name: size(values) for name, values in rollout.sensors.items()},
+        "bush": {foot: [size(part[foot]) for part in (rollout.bush, rollout.bush_rates)] for foot in rollout.bush},
+    }  # fmt: skip
+    kept = Path(__file__).parent / "kept"
+    ways = {name: plan.positions[:, place] for place, name in enumerate(plan.joints)}
+    assert_as_kept(described({"plan": plan, "ways": ways}), kept / "walk_planned.txt", share=1e-4, least=1e-5)
+    assert_as_kept(described(sizes), kept / "walk_played.txt", share=1e-2, least=1e-4)
+
+
+def size(values: np.ndarray) -> list[float]:
+    """Root mean square of each column."""
+    return [float(one) for one in np.sqrt(np.mean(values**2, axis=0))]
 
 
 @pytest.mark.parametrize(("axis", "column"), [("pitch", 1), ("roll", 2)])

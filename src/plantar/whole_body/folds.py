@@ -64,12 +64,7 @@ class Folds:
     def of(cls, equation: Equation, base: BaseParameters, recordings: Sequence[Samples]) -> Folds:
         """Recordings cut in time, so that there are about `FOLDS` of them, and one or more of each recording."""
         first = recordings[0]
-        rows = tuple(first.measured)
-        flags = [
-            flag
-            for row in rows
-            for flag in first.positive.get(row, (False,) * len(first.extras.get(row, ())))
-        ]
+        flags = [flag for row in first.measured for flag in first.positive.get(row, ())]
         each = max(1, -(-FOLDS // len(recordings)))
         factors = [
             factors_of(equation, base, samples.select(slice(start, stop)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.estimation.delays.lag_search import LagGrid, search_lags
+from plantar.estimation.delays.lag_search import LagGrid, _windows, search_lags
 from plantar.signals.filters import low_pass
 
 PERIOD, SAMPLES, STEPS = 0.05, 800, 5
@@ -116,3 +116,12 @@ def test_a_foot_late_by_less_than_a_step_of_the_grid_is_found_where_the_load_cha
     ]
     found = search_lags(grids)
     np.testing.assert_allclose(found.values[:2], late, atol=0.003)
+
+
+@pytest.mark.parametrize(
+    ("samples", "found"),
+    [(399, (1, 399)), (400, (1, 400)), (799, (1, 400)), (800, (2, 400)), (2010, (5, 400))],
+)
+def test_windows_last_four_seconds_or_as_long_as_there_is(samples: int, found: tuple[int, int]) -> None:
+    grid = LagGrid(np.zeros((1, samples, 6)), np.zeros((1, 2, 1, samples, 6)), np.zeros(1), np.zeros(1), 0.01)
+    assert _windows(grid) == found

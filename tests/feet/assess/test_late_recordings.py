@@ -53,6 +53,14 @@ def said(
     return [note.text for note in late_recordings(Tangent.of(fit, recordings, False), wide)]
 
 
+def test_recordings_with_one_offset_are_not_compared() -> None:
+    recordings = swaying(PLAIN, 0.012)
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model="kelvin_voigt"))
+    assert fit is not None
+    found = [len(late_recordings(Tangent.of(fit, recordings, shared), fit)) for shared in (False, True)]
+    assert found == [1, 0]
+
+
 @pytest.mark.parametrize(("late", "told"), [(0.012, "12 ms later"), (-0.012, "12 ms earlier")])
 def test_a_late_recording_is_told_with_its_delay(late: float, told: str) -> None:
     (text,) = said(swaying(PLAIN, late))

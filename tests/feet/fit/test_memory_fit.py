@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.feet.fit import memory_fit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.memory_fit import data_sets_about, placed_as
+from plantar.feet.fit.memory_fit import about_its_centre, data_sets_about, placed_as
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.load_torque import load_torque
@@ -55,3 +57,28 @@ def test_what_was_found_is_taken_off_torque_and_path(recording: Recording, fit: 
     np.testing.assert_array_equal(found.drift, drift.angle)
     assert as_read.drift is None
     np.testing.assert_array_equal(found.motion.deflection, as_read.motion.deflection)
+
+
+def test_a_memory_is_found_about_the_centre_that_the_round_before_left(
+    recording: Recording, fit: AxisFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """How far aside it is stances find by themselves."""
+    asked: list[tuple[float, ...]] = []
+    rounds = iter((1.0, 2.0, 3.0))
+
+    def over_stances(*_: object) -> SimpleNamespace:
+        at = next(rounds)
+        return SimpleNamespace(place=(at, 10 * at, 100 * at))
+
+    def data_set_of(one: object, foot: str, axis: str, share: float, *place: float) -> str:
+        assert (one, foot, axis, share) == (recording, fit.foot, fit.axis, 0.3)
+        asked.append(place)
+        return "data"
+
+    monkeypatch.setattr(memory_fit, "over_stances", over_stances)
+    monkeypatch.setattr(memory_fit, "data_set_of", data_set_of)
+    monkeypatch.setattr(memory_fit, "with_model", lambda *given: given)
+    monkeypatch.setattr(memory_fit, "fit_again", lambda before, sets: (before, sets))
+    found = about_its_centre(fit, "first", [recording], 0.3)  # type: ignore[arg-type]
+    assert asked == [(10.0, 100.0), (20.0, 200.0)]
+    assert found.place == (3.0, 30.0, 300.0)  # type: ignore[comparison-overlap]

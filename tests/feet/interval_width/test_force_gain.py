@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,9 +14,11 @@ from feet_trials import LINEAR, codes
 from plantar.conventions import GRAVITY, NORMAL95
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width.force_gain import (
+    WINDOW,
     GainError,
     _inverse_gains,
     _mass_deviation,
+    _windows,
     force_gain_errors,
 )
 from plantar.feet.prepare_log import checked, prepare
@@ -51,6 +54,22 @@ def prepared(robot: RobotModel, log: MotionLog) -> Recording:
 def errors(robot: RobotModel, log: MotionLog) -> dict[str, float]:
     found = force_gain_errors(robot, [prepared(robot, log)])
     return {foot: each.share for foot, each in found.items() if each.sure}
+
+
+def test_a_recording_shorter_than_a_window_has_none(weighed: RobotModel) -> None:
+    recording = prepared(weighed, record(sway(duration=20.0)))
+    weight = weighed.mass * GRAVITY
+    half = round(WINDOW / 2 / recording.period)
+    for count, found in ((2 * half - 1, 0), (half + 1, 0), (2 * half, 1), (3 * half, 2)):
+        assert _windows(first(recording, count), weight).shape == (found, 2)
+
+
+def first(recording: Recording, count: int) -> Recording:
+    """Its feet's first samples."""
+    return SimpleNamespace(  # type: ignore[return-value]
+        raw={foot: SimpleNamespace(force_z=state.force_z[:count]) for foot, state in recording.raw.items()},
+        period=recording.period,
+    )
 
 
 def test_sensors_that_carry_the_weight_are_right(weighed: RobotModel) -> None:

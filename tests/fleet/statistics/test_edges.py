@@ -7,7 +7,8 @@ import pytest
 from scipy import stats
 
 from plantar.conventions import Array
-from plantar.fleet.statistics.changes import _step, history_of
+from plantar.fleet.statistics import changes
+from plantar.fleet.statistics.changes import Change, _step, history_of
 from plantar.fleet.statistics.control_chart import Limits, limits_of, watch
 from plantar.fleet.statistics.random_effects import mean_of, nested_means, pooled
 from plantar.fleet.statistics.trend import trend_of
@@ -166,3 +167,23 @@ def test_a_step_has_students_interval_of_the_days_within_two_months_of_it() -> N
         lonely = _step((days, 99), starts, time, values, np.ones(100))
         assert (lonely.low, lonely.high) == (-np.inf, np.inf), "one day has no scatter"
         assert lonely.size == pytest.approx(values[99] - values[days - 1])
+
+
+@pytest.mark.parametrize("slow", [slice(0, 2), slice(1, 3), slice(1, 4), slice(2, 3)])
+def test_steps_of_a_slow_change_are_none_and_the_others_are(
+    slow: slice, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = [(10 * place, 10 * place + 3) for place in range(1, 5)]
+    one, looked = Change("trend", steps[slow][0][0], 0, 1.0, 0.5, 1.5), []
+
+    def told(run: list[tuple[int, int]], own: slice, *_: object) -> Change | None:
+        looked.append((run, own))
+        return one if run == steps[slow] else None
+
+    monkeypatch.setattr(changes, "_slow_change", told)
+    real, found = changes._told_apart(steps, np.arange(50.0), np.zeros(50), np.ones(50))
+    assert real == steps[: slow.start] + steps[slow.stop :]
+    assert found == [one]
+    before = steps[slow.start - 1][0] if slow.start else 0
+    after = steps[slow.stop][0] if slow.stop < 4 else 50
+    assert (steps[slow], slice(before, after)) in looked

@@ -166,6 +166,13 @@ def test_a_file_in_blocks_reads_as_it_does_whole(
     assert [note.text for note in notes] == ["log.txt: line 202 left out: not 2 numbers"]
 
 
+def test_lines_without_anything_stand_before_and_among_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "log.txt"
+    path.write_text("\n  \n/ /\n# a b\n\n1 2\n\n3 4\n")
+    values, _ = read_numbers(path, ReadLimit(path), [])
+    np.testing.assert_array_equal(values, [[1.0, 2.0], [3.0, 4.0]])
+
+
 CELLS = [[0.1, 0.05], [0.1, -0.05], [-0.1, 0.0]]
 
 
@@ -262,6 +269,16 @@ def test_a_signal_has_a_row_for_each_stamp_whichever_way_it_was_written(
     wanted = np.arange(np.prod(shape), dtype=float).reshape(shape[0], -1)
     np.testing.assert_array_equal(values, wanted if shape[0] == 4 else wanted.T)
     np.testing.assert_array_equal(time, np.arange(4.0))
+
+
+def test_mc_rtc_versions_are_tried_up_to_the_tenth(tmp_path: Path) -> None:
+    path, time = tmp_path / "log.bin", np.arange(20.0)
+    save_mc_rtc(path, time, np.zeros((20, 2)), np.tile(np.eye(4), (20, 1, 1)))
+    content = path.read_bytes()
+    for version, refused in ((10, "does not name its 2 joints"), (11, "is not an mc_rtc binary log")):
+        path.write_bytes(b"ANN" + bytes([0x45 + version]) + content[4:])
+        with pytest.raises(LogError, match=refused):
+            mc_rtc.read(path, None, ReadLimit(path, 10**9))
 
 
 @pytest.mark.parametrize("magic", [b"ANNA", b"ANN", b"XNNE", b"ANNZ"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import os
 from collections.abc import Callable
+from decimal import Decimal
 from pathlib import Path
 from threading import Barrier
 
@@ -250,3 +251,17 @@ def test_a_text_that_is_no_hole_is_an_error(tmp_path: Path) -> None:
 def test_blanks_beside_names_are_not_theirs(tmp_path: Path) -> None:
     log = open_log(write(tmp_path, csv_text(header=" time, joint.a.position ,wrench.left.force.z")))
     assert set(log.columns) == {"joint.a.position", "wrench.left.force.z"}
+
+
+def test_decimals_and_whole_numbers_of_a_parquet_file_are_numbers(tmp_path: Path) -> None:
+    decimals = [Decimal("0.125"), Decimal("-1.5"), Decimal("2.25")]
+    made = {
+        "time": pa.array([0, 1, 2], pa.int32()), "joint.a.position": pa.array(decimals, pa.decimal128(10, 3)),
+        "joint.b.position": pa.array([0.5, 1.5, None], pa.float32()),
+        "joint.c.position": pa.array([3, 2, 1], pa.uint8()),
+    }  # fmt: skip
+    pa_parquet.write_table(pa.table(made), tmp_path / "log.parquet")
+    columns = open_log(tmp_path / "log.parquet").columns
+    np.testing.assert_array_equal(columns["joint.a.position"], [0.125, -1.5, 2.25])
+    np.testing.assert_array_equal(columns["joint.b.position"], [0.5, 1.5, np.nan])
+    np.testing.assert_array_equal(columns["joint.c.position"], [3.0, 2.0, 1.0])
