@@ -29,9 +29,7 @@ RobotInput: TypeAlias = "RobotModel | PathInput"
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
 PROBES = 40  # samples of a log that another one may hold as well
-OVERLAP = (
-    0.1  # share of a log that another may hold too: told twice, it narrows intervals by a twentieth at most
-)
+OVERLAP = 0.1  # share of a log that another may hold too: it narrows intervals by a twentieth at most
 BEGUN_ALIKE = 0.5  # the same of logs that begin alike, as simulations without noise do before they part
 AHEAD = 2**26  # bytes of text: read by the time that what works on logs is imported
 FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
@@ -190,7 +188,10 @@ def _same_recording(log: MotionLog, other: MotionLog) -> bool:
     measured = forces or short.columns.keys() == long.columns.keys()
     if not shared or not len(short) or not measured:
         return False
-    probes = np.linspace(0, len(short) - 1, PROBES).astype(int)
+    # What has been left out of both tells nothing twice.
+    whole = np.isfinite(np.sum([short.columns[name] for name in shared], axis=0))
+    places = np.flatnonzero(whole if whole.any() else ~whole)
+    probes = places[np.linspace(0, len(places) - 1, PROBES).astype(int)]
     told = {name: short.columns[name][probes] for name in shared}
     finest = max(told, key=lambda name: len(np.unique(told[name])))
     alike = np.isin(long.columns[finest], np.unique(told[finest]))
