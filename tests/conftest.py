@@ -20,7 +20,6 @@ from pathlib import Path
 import pytest
 
 from biped_robot import make_robot
-from heard_words import Heard
 from plantar.robot.model import RobotModel
 
 # The longest files, which come first: one process would be at work on them alone when all else is done.
@@ -34,41 +33,6 @@ LONGEST = (
     "tests/whole_body/test_inertia.py",
     "tests/twin/simulation/test_rollout.py",
 )
-
-
-# Tests in which every note, finding and error that comes up is one that is kept: not those of files as other libraries
-# refuse them, in words of their own.
-HEARD = tuple(
-    f"tests/{place}"
-    for place in (
-        "comparison/", "contact/", "design/", "estimation/", "exporters/", "faults/", "feet/", "fleet/test_manifest",
-        "fleet/test_plan", "inspection/", "logs/readers/test_bag_clocks", "logs/readers/test_csv_text",
-        "logs/readers/test_force_cells", "logs/readers/test_layouts", "logs/readers/test_plain_numbers",
-        "logs/readers/test_roles", "logs/readers/test_streams", "logs/readers/test_table.py",
-        "logs/readers/test_urdf_names", "logs/test_", "model_selection/",
-        "motions/", "online/", "results/", "robot/", "robot_guess/", "sensors/",
-        "signals/", "twin/", "whole_body/",
-    )
-)  # fmt: skip
-WORDS = pytest.StashKey[Heard]()
-
-
-@pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
-    # Names of real recordings are no part of the project.
-    if item.nodeid.startswith(HEARD) and "shared_data" not in getattr(item, "fixturenames", ()):
-        heard = Heard(item.path.parent, item.config._tmp_path_factory.getbasetemp())  # type: ignore[attr-defined]
-        item.stash[WORDS] = heard
-        heard.begin()
-    return (yield)
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
-    result = yield
-    if (heard := item.stash.get(WORDS, None)) is not None:
-        heard.end()
-    return result
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
