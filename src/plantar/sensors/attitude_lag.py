@@ -24,9 +24,8 @@ from plantar.signals.orientation import rates_from, unit_quaternions
 ATTITUDE_LATE = "attitude_late"
 # Share of the disagreement that a lag must explain: of filters of higher order, and of dead time, it does a third.
 EXPLAINED = 0.25
-BETTER = (
-    3.0  # times a tilt error's odds of explaining it: beside a real one twice at most, of lags four or more
-)
+# Times a tilt error's odds of explaining it: beside a real one twice at most, of lags four or more.
+BETTER = 3.0
 
 
 @dataclass(frozen=True)

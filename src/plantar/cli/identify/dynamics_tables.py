@@ -8,9 +8,8 @@ from plantar.cli.console.terminal import VERDICT_STYLE, print_notes, table
 from plantar.results.dynamics import ONE_OF_MANY, DynamicsResult
 from plantar.results.numbers import number
 
-DUST = (
-    1e-9  # of the largest number of a unit: rounding leaves as much of what is zero, and no sensor shows it
-)
+# Of the largest number of a unit: rounding leaves as much of what is zero, and no sensor shows it.
+DUST = 1e-9
 LINK_COLUMNS = ("m", "mx", "my", "mz")
 
 

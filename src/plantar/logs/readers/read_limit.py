@@ -14,9 +14,8 @@ from pathlib import Path
 
 from plantar.errors import LogError, NoRoom
 
-SHARE = (
-    0.25  # of the machine's memory, or a worker's: what is done with a log needs several times its numbers
-)
+# Of the machine's memory, or a worker's: what is done with a log needs several times its numbers.
+SHARE = 0.25
 SMALL = 2**28  # bytes that any file may unpack to: the numbers of ten minutes at 1 kHz in 55 columns
 RATIO = 100  # bytes out of a file for each of its own beyond that: recordings shrink to a twentieth at best
 COLUMNS = 10_000  # a humanoid with every internal signal of its controller has a few thousand
