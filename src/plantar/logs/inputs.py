@@ -188,10 +188,10 @@ def _same_recording(log: MotionLog, other: MotionLog) -> bool:
     measured = forces or short.columns.keys() == long.columns.keys()
     if not shared or not len(short) or not measured:
         return False
+    probes = np.linspace(0, len(short) - 1, PROBES).astype(int)
     # What has been left out of both tells nothing twice.
-    whole = np.isfinite(np.sum([short.columns[name] for name in shared], axis=0))
-    places = np.flatnonzero(whole if whole.any() else ~whole)
-    probes = places[np.linspace(0, len(places) - 1, PROBES).astype(int)]
+    whole = np.isfinite(np.sum([short.columns[name][probes] for name in shared], axis=0))
+    probes = probes[whole] if whole.any() else probes
     told = {name: short.columns[name][probes] for name in shared}
     finest = max(told, key=lambda name: len(np.unique(told[name])))
     alike = np.isin(long.columns[finest], np.unique(told[finest]))
