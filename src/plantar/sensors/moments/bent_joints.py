@@ -25,7 +25,7 @@ BENT = "joints_bend"
 # rad, with the robot's weight at a metre: deviation of what stiff joints seem to bend by. A URDF's legs that are a
 # little too short do as much; 24 simulated robots under wrong URDFs seemed to by no more than this and noise explain.
 USUAL = 0.004
-# What bends accelerates as well, and torques with it: by a tenth as a rule, by a hundredth after these.
+# Joints that bend accelerate the links, which changes torques by up to a tenth: after these passes a hundredth is left.
 PASSES = 3
 SIZES = np.geomspace(0.002, 1.0, 60)  # rad, likewise: how far joints may bend that do
 
