@@ -156,6 +156,6 @@ def test_the_bend_of_legs_is_told_with_its_deviation() -> None:
         ready = SimpleNamespace(bending=SimpleNamespace(mean=mean, std=2e-6))
         return [tuple(one) for one in _bending(cast(PreparedLogs, ready))]  # type: ignore[arg-type]
 
-    assert of(1.5e-5) == [("legs' joints together", 1.5e-5, 2e-6)]
-    assert of(0.0) == [("legs' joints together", 0.0, 2e-6)]
+    assert of(1.5e-5) == [("joints of legs and trunk together", 1.5e-5, 2e-6)]
+    assert of(0.0) == [("joints of legs and trunk together", 0.0, 2e-6)]
     assert of(None) == []

@@ -34,7 +34,7 @@ class JointBending(NamedTuple):
     """How far joints bend beyond their encoders, in the order of the robot's joints.
 
     `compliances` (joints,) [rad/(N.m)] that logs are put right by, and what is left open of them, `covariance` (joints,
-    joints). `mean`, `std`: what the moments show of the legs' joints together; None where they show nothing.
+    joints). `mean`, `std`: what the moments show of all of them together; None where they show nothing.
     """
 
     compliances: Array

@@ -1,7 +1,7 @@
 """What a foot's force sensor, the IMU and the clocks may get wrong, and by how much before the moments are asked.
 
 The columns of a fit of moments are, in this order: torques about pitch of each foot, torques about roll of each foot,
-what else each foot's sensor may get wrong, the IMU's turn about its three axes, the compliances of the legs' joints,
+what else each foot's sensor may get wrong, the IMU's turn about its three axes, the compliances of `carrying_joints`,
 and the delays of each foot, of the encoders, of the gyroscope, and of all torques about pitch and about roll behind the
 forces.
 """
