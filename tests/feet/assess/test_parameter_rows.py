@@ -10,6 +10,7 @@ from scipy import stats
 
 from made_recording import FOOT, PERIOD, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
+from plantar.contact.stances import Stances
 from plantar.feet.assess import parameter_rows
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.recording import Recording
@@ -99,6 +100,9 @@ def test_a_lean_matters_to_a_model_with_memory_alone() -> None:
     rows = rows_of(leaning, fit_of(Elastoplastic(), (400.0, 20.0, 5.0)))
     assert "leans for 20 % of the time" in rows[0].reason
     assert [row.name for row in rows] == ["stiffness", "damping", "slip_torque", "slip_angle"]
+    each = np.arange(3000) // 300
+    steps = replace(leaning, stances={FOOT: Stances(each, np.ones(3000))})
+    assert "leans" not in rows_of(steps, fit_of(Elastoplastic(), (400.0, 20.0, 5.0)))[0].reason
 
 
 def test_a_foot_without_samples_has_rows_that_say_why() -> None:

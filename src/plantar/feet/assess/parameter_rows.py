@@ -108,7 +108,8 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         softened = max(softened, _softened(fit, angle))
         contact = recording.contacts[fit.foot]
         loaded += float(contact.loaded.sum()) * recording.period
-        leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
+        if recording.stances[fit.foot] is None:  # each step unloads the rubber, and its path starts anew
+            leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
         seconds += len(angle) * recording.period
         moved += float(np.sum((angle - angle.mean()) ** 2))
         missed += float(np.sum((torque - predicted.torque[used]) ** 2))

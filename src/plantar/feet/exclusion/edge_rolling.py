@@ -51,8 +51,8 @@ def without_edge_rolling(
 ) -> list[Recording]:
     """The recordings without samples in which a sole leans on its edge; what is near the edge and flat is used.
 
-    Feet with `contact: always` are left as they are: their centre of pressure means nothing. So are feet that step:
-    they roll while they land and lift, and what is left there weighs little.
+    Feet with `contact: always` are left as they are: their centre of pressure means nothing. Of feet that step all that
+    is near the edge is left out: they reach it while they land and tip, too little each time to be told from flat.
     """
     rest = list(recordings)
     for name, foot in robot.feet.items():
@@ -74,8 +74,9 @@ def _flat(
     edges = [_edges(recording, name, polygon, margin) for recording in recordings]
     if not any(near.any() for _, _, near in edges):
         return list(recordings)
-    model, rest = _bush_model(recordings, name, [near for _, _, near in edges]), []
-    if model is None and margin > beyond:  # nothing is clear of so wide a border
+    stand, rest = any(one.stances[name] is None for one in recordings), []
+    model = _bush_model(recordings, name, [near for _, _, near in edges]) if stand else None
+    if stand and model is None and margin > beyond:  # nothing is clear of so wide a border
         return _flat(recordings, name, polygon, beyond, beyond, largest)
     for recording, (depth, inwards, edge) in zip(recordings, edges, strict=True):
         contact = recording.contacts[name]
@@ -83,7 +84,7 @@ def _flat(
             rest.append(recording)
             continue
         reach = round(BESIDE / recording.cutoff / recording.period)
-        if model is None:
+        if model is None or recording.stances[name] is not None:
             beside = widened(edge, reach) & contact.standing
             rest.append(
                 recording.without(name, edge, Reason.NEAR_THE_EDGE).without(
@@ -114,10 +115,7 @@ def _flat(
 
 def _edges(recording: Recording, foot: str, polygon: Array, margin: float) -> tuple[Array, Array, Mask]:
     """How far inside of each edge the centre of pressure is, and by how much the edge has moved, (N, n) [m]; where the
-    foot stands within `margin` of one, (N,). A foot that steps rolls on its edges, and stands near none."""
-    if recording.stances[foot] is not None:
-        nothing = np.zeros((len(recording.time), 0))
-        return nothing, nothing, np.zeros(len(nothing), dtype=bool)
+    foot stands within `margin` of one, (N,)."""
     cop = low_pass(recording.bushes[foot].cop, recording.period, QUICK_CUTOFF)
     depth = edge_distances(cop, polygon)
     inwards = moved_inwards(recording, foot, depth, polygon)
