@@ -235,9 +235,9 @@ def test_rows_of_a_walk_change_as_what_it_misses_does(twin: RobotModel) -> None:
         assert slope @ changed == pytest.approx(changed @ changed, rel=0.03)
 
 
-@pytest.mark.parametrize(("mean", "some"), [(3e-5, False), (6e-5, True)])
+@pytest.mark.parametrize(("mean", "some"), [(1e-5, False), (3e-5, True)])
 def test_a_joint_that_hardly_carries_objects_to_little(twin: RobotModel, mean: float, some: bool) -> None:
-    """A yaw joint that seems to push, by three and a half deviations, as much as a few of the others bend or less."""
+    """A yaw joint that seems to push, by nearly four deviations, is another error."""
     columns, count = compliance_columns(twin), len(prior_deviations(twin))
     values, std = np.zeros(count), np.full(count, 1e-5)
     values[columns], std[columns.start] = mean, 4e-5

@@ -26,10 +26,15 @@ def carrying_joints(robot: RobotModel) -> list[list[int]]:
 def leg_joints(robot: RobotModel) -> list[list[int]]:
     """Places of the joints between the URDF's root and each foot, those of all legs together that are equally far down;
     each by itself where legs differ."""
-    chains = [_above(robot, foot.bush) for foot in robot.feet.values()]
+    chains = leg_chains(robot)
     if len({len(chain) for chain in chains}) > 1:
         return [[joint] for joint in sorted({joint for chain in chains for joint in chain})]
     return [sorted(set(joints)) for joints in zip(*chains, strict=True)]
+
+
+def leg_chains(robot: RobotModel) -> list[list[int]]:
+    """Places of the joints between the URDF's root and each foot, from the root on."""
+    return [_above(robot, foot.bush) for foot in robot.feet.values()]
 
 
 def _above(robot: RobotModel, placement: Placement) -> list[int]:
