@@ -60,7 +60,11 @@ def test_a_model_whose_bush_lacks_an_axis_of_the_result_is_refused(
         export(feet, target, two, model=one)
     export(feet, target, one)
     if target == "drake":  # its joints have no springs of their own: a slide without one would drop the robot
-        with pytest.raises(ExportError, match="LLEG_BUSH_Z, which the result has not: it would move freely"):
+        with pytest.raises(
+            ExportError,
+            match=r"one\.sdf: has the bush of 'left' with LLEG_BUSH_Z, which the result has not: it would "
+            r"move freely \(valid: a model without bushes\)$",
+        ):
             export(rigid, target, two, model=one)
     else:
         # As a robot's own model, whose slide stays as it is there, and that is told.
@@ -279,7 +283,9 @@ def test_a_joint_that_sdformat_has_no_word_for_is_named(feet: dict[str, Any], ur
     assert "planar" in kinds
     urdf.write_text(kinds)
     with pytest.raises(
-        ExportError, match=r"value 'planar': joint 'left_hip' is of a type that is not carried"
+        ExportError,
+        match=r"biped\.urdf, value 'planar': joint 'left_hip' is of a type that is not carried over "
+        r"\(valid: continuous, fixed, prismatic, revolute\)$",
     ):
         export(feet, "sdf", urdf.with_name("out.sdf"))
 

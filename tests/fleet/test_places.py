@@ -82,10 +82,10 @@ def test_whatever_a_store_says_is_one_line(act: Callable[[str], object]) -> None
 
 def test_a_store_that_cannot_be_used_is_told_apart_from_a_log_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(PlaceError, match="cannot be written"):
+    with pytest.raises(PlaceError, match=r"x: cannot be written: File exists$"):
         Store(str(tmp_path / "file")).write("x", b"")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(PlaceError, match="cannot be read"):
+    with pytest.raises(PlaceError, match=r"folder: cannot be read: Is a directory$"):
         Store(str(tmp_path)).read("folder")
 
 
@@ -120,7 +120,7 @@ def test_remote_files_are_brought_under_their_name(tmp_path: Path) -> None:
     assert stamp_of(place).size == 5
     assert abs((datetime.now(UTC) - time_of(place)).total_seconds()) < 60
     assert found_at("memory://logs/*.csv") == ["memory:///logs/day.csv"]
-    with pytest.raises(PlantarError, match=r"none\.csv: does not exist"):
+    with pytest.raises(PlantarError, match=r"^memory://logs/none\.csv: does not exist$"):
         brought("memory://logs/none.csv", tmp_path)
 
 
@@ -222,7 +222,7 @@ def test_what_is_wrong_with_a_place_is_said_once() -> None:
         time_of("none.csv")
     with pytest.raises(PlantarError, match=r"^memory://none/x\.csv: does not exist$"):
         stamp_of("memory://none/x.csv")
-    with pytest.raises(PlantarError, match=r"^nope://b/x: cannot be read: "):
+    with pytest.raises(PlantarError, match=r"^nope://b/x: cannot be read: Protocol not known: nope$"):
         stamp_of("nope://b/x")
 
 

@@ -184,7 +184,11 @@ def test_other_bipeds_move_too(motion: str, tmp_path) -> None:
 def test_a_robot_without_two_feet_is_refused(tmp_path) -> None:
     file = hrp2.write(tmp_path)
     file.write_text(file.read_text().replace("  left:", "  third:"))
-    with pytest.raises(MotionError, match="a left and a right foot"):
+    with pytest.raises(
+        MotionError,
+        match=r"robot\.yaml: motions are planned for a left and a right foot and a chest that carries "
+        r"an IMU \(valid: a robot file with imu, left and right\)$",
+    ):
         plan_motion("Tilt1", load_robot(file))
 
 

@@ -48,7 +48,11 @@ def test_a_log_is_checked_as_for_a_batch_fit(robot: RobotModel) -> None:
     assert log_notes(robot, log) == ()
     columns = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
     degrees = log.with_columns({column: np.degrees(log.column(column)) for column in columns})
-    with pytest.raises(DataError, match="degrees"):
+    with pytest.raises(
+        DataError,
+        match=r"^sway: columns 'imu\.chest\.angular_velocity\.\*': 57 times the orientation's rate, "
+        r"which looks like degrees per second \(valid: rad/s\)$",
+    ):
         log_notes(robot, degrees)
 
 

@@ -125,7 +125,11 @@ def test_a_robot_that_is_fixed_to_the_world_stands_as_it_does_without(tmp_path: 
 
 
 def test_a_robot_without_weight_is_told_of_the_urdf_not_of_a_file_that_is_gone(tmp_path: Path) -> None:
-    with pytest.raises(RobotError, match=r"biped\.urdf: urdf: its links weigh nothing"):
+    with pytest.raises(
+        RobotError,
+        match=r"biped\.urdf: urdf: its links weigh nothing \(valid: links with an <inertial>: contact "
+        r"and delays follow from the robot's weight\)$",
+    ):
         guessed(tmp_path, record(LARGE), urdf=re.sub('mass value="[^"]*"', 'mass value="0"', URDF))
 
 
@@ -276,7 +280,14 @@ def test_a_log_of_another_robot_is_an_error(tmp_path: Path) -> None:
     }
     for name in list(model(TALOS).names)[1:]:
         columns[f"joint.{name}.position"] = 0.1 * np.sin(log.time)
-    with pytest.raises(LogError, match="do not hold any joint") as caught:
+    with pytest.raises(
+        LogError,
+        match=r"talos\.csv: columns 'joint\.\*\.position': do not hold any joint of the URDF "
+        r"\(left_ankle_pitch_joint, left_ankle_roll_joint, left_elbow_joint and 26 more\); it "
+        r"holds arm_left_1_joint, arm_left_2_joint, arm_left_3_joint and 29 more \(valid: a log "
+        r"of this robot, or 'joint_names: \{renamed: \{URDF joint: log joint\}\}' in the robot "
+        r"file\)$",
+    ) as caught:
         guessed(tmp_path, MotionLog("talos", log.time, columns), urdf=G1)
     assert "\n" not in str(caught.value)
     assert "talos.csv" in str(caught.value)

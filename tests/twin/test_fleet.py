@@ -87,5 +87,5 @@ def test_a_preset_with_robots_or_logs_of_its_own_is_refused(tmp_path: Path, pres
 
 
 def test_a_fleet_is_no_more_than_a_hundred_thousand_logs(tmp_path: Path) -> None:
-    with pytest.raises(PlantarError, match="are too many logs"):
+    with pytest.raises(PlantarError, match=r"^value 100100: are too many logs \(valid: at most 100000\)$"):
         write_fleet(tmp_path, 1001, 100, motion=MOTION, preset="sensors", seed=0, progress=lambda _: None)

@@ -86,10 +86,18 @@ def test_one_line_maps_the_columns_of_all_joints(tmp_path: Path) -> None:
 
 def test_a_joint_vector_of_another_length_or_without_names_is_refused(tmp_path: Path) -> None:
     (tmp_path / "walk.sh_q").write_text("0.0 1 2 3\n0.1 1 2 3\n0.2 1 2 3\n")
-    with pytest.raises(LogError, match=r"columns\.joints"):
+    with pytest.raises(
+        LogError,
+        match=r"walk\.sh_q: does not name its 3 joints \(valid: columns\.joints in the robot file, in "
+        r"the log's order\)$",
+    ):
         open_log(tmp_path / "walk.sh_q")
     robot = make_robot(tmp_path / "robot", columns={"joints": ["neck"]})
-    with pytest.raises(LogError, match="3 values a sample, not 1"):
+    with pytest.raises(
+        LogError,
+        match=r"walk\.sh_q: joints\.position: the log has 3 values a sample, not 1 \(valid: "
+        r"columns\.joints in the robot file, in the log's order\)$",
+    ):
         open_log(tmp_path / "walk.sh_q", robot)
 
 

@@ -66,7 +66,11 @@ def test_one_row_of_a_hundred_may_step_back_in_a_table(strays: int, fine: bool, 
             f"time does not increase in {strays} of 1000 rows (first after t = 0.09 s)" in log.notes[0].text
         )
     else:
-        with pytest.raises(LogError, match="does not increase in 11 of 1000 rows"):
+        with pytest.raises(
+            LogError,
+            match=r"log\.csv, column 'time', t = 0\.09 s, value -0\.9: does not increase in 11 of 1000 "
+            r"rows, first here \(valid: seconds that increase from row to row, in double precision\)$",
+        ):
             open_log(tmp_path / "log.csv")
 
 
@@ -145,7 +149,7 @@ def test_names_count_where_there_are_as_many_as_columns(tmp_path: Path) -> None:
     assert (values.tolist(), names) == ([[1, 2], [3, 4]], [])
     assert [note.text for note in notes] == ["log.txt ends in the middle of a line; that line is left out"]
     path.write_text("# nothing\n\n")
-    with pytest.raises(LogError, match="holds no numbers"):
+    with pytest.raises(LogError, match=r"log\.txt: holds no numbers \(valid: one sample a line\)$"):
         read_numbers(path, ReadLimit(path), notes)
 
 
@@ -193,7 +197,11 @@ def test_force_cells_span_a_sole(places: list[list[float]], said: str | None) ->
     else:
         with pytest.raises(LogError, match=said.replace("?", r"\?")):
             wrench_of_cells("wrench.left", values, places, LOG)
-    with pytest.raises(LogError, match="stand in one line"):
+    with pytest.raises(
+        LogError,
+        match=r"^x: columns\.wrench\.left\.cells: the cells stand in one line and show no moment about "
+        r"it \(valid: 3 or more cells that span an area\)$",
+    ):
         wrench_of_cells("wrench.left", values[:, :2], CELLS[:2], LOG)
 
 
@@ -210,7 +218,7 @@ def test_how_large_a_log_may_be(tmp_path: Path) -> None:
     with pytest.raises(LogError):
         limit.unpack(1)
     limit.columns(10_000)
-    with pytest.raises(LogError, match="more than 10000 columns"):
+    with pytest.raises(LogError, match=r"log\.bin: has more than 10000 columns \(valid: fewer columns\)$"):
         limit.columns(10_001)
     limit.numbers(most // 8, 1)
     with pytest.raises(LogError):
@@ -245,11 +253,19 @@ def test_mat_files_of_another_kind_say_what_to_write_instead(tmp_path: Path) -> 
     h5py = pytest.importorskip("h5py")
     old = tmp_path / "old.mat"
     old.write_bytes(b"MATLAB 5.0 MAT-file, Platform: GLNXA64" + bytes(200))
-    with pytest.raises(LogError, match=r"old\.mat: is a MATLAB file older than 7\.3 .*writetable"):
+    with pytest.raises(
+        LogError,
+        match=r"old\.mat: is a MATLAB file older than 7\.3 \(valid: a robot logger's file; a table of "
+        r"your own as CSV, by writetable, with `columns` in the robot file\)$",
+    ):
         open_log(old)
     with h5py.File(tmp_path / "own.mat", "w") as file:
         file["hip_angle"] = np.zeros(4)
-    with pytest.raises(LogError, match=r"holds no signal of a robot logger, but hip_angle .*writetable"):
+    with pytest.raises(
+        LogError,
+        match=r"own\.mat: holds no signal of a robot logger, but hip_angle \(valid: a robot logger's "
+        r"file; a table of your own as CSV, by writetable, with `columns` in the robot file\)$",
+    ):
         open_log(tmp_path / "own.mat")
 
 

@@ -156,10 +156,17 @@ def test_a_plate_becomes_a_picture_of_the_report(tracks: tuple[Track, ...]) -> N
 def test_what_is_missing_is_said(
     tracks: tuple[Track, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(DataError, match="no motion 'tilt9'"):
+    with pytest.raises(DataError, match=r"^the residuals hold no motion 'tilt9'$"):
         plots.bush_angles(tracks, "tilt9")
-    with pytest.raises(DataError, match="holds no residuals"):
+    with pytest.raises(
+        DataError,
+        match=r"test_what_is_missing_is_said0: holds no residuals \(valid: the directory of a "
+        r"result\.json\)$",
+    ):
         write_figures(tmp_path, tmp_path)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(MissingExtra, match=r"plantar\[figures\]"):
+    with pytest.raises(
+        MissingExtra,
+        match=r"^drawing figures needs the package 'matplotlib': pip install 'plantar\[figures\]'$",
+    ):
         plots.bush_angles(tracks, "tilt3")
