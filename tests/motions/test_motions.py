@@ -201,6 +201,11 @@ def test_profiles() -> None:
     assert np.abs(sway).max() == pytest.approx(1.0, abs=1e-3)
     assert bows(time, 5.0, 10.0, 2).max() == pytest.approx(1.0)
     assert window(time, 5.0, 25.0, 2.0)[time == 15] == 1.0
+    late = sweep(time, 20.0, 30.0, 0.1, 0.3)
+    quick = (time > 22) & (time < 28)  # where nothing is eased
+    along = time[quick] - 20
+    assert late[quick] == pytest.approx(np.sin(2 * np.pi * (0.1 * along + 0.01 * along**2)))
+    assert not late[(time <= 20) | (time >= 30)].any()
     swept = sweep(time, 0.0, 50.0, 0.1, 0.5)
     crossings = np.flatnonzero(np.diff(np.sign(swept)))
     assert len(crossings) == pytest.approx(2 * 50 * 0.3, abs=2)  # twice the mean frequency
