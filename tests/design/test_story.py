@@ -199,9 +199,19 @@ def test_feet_that_are_too_soft_are_refused_with_what_is_needed() -> None:
 @pytest.mark.parametrize(
     ("settings", "line"),
     [
-        ({"stiffness": -1.0}, "stiffness is not valid"),
-        ({"stiffness": 500.0, "duration": 3.0}, "duration is not valid"),
-        ({"stiffness": 500.0, "criterion": "E"}, "criterion is not a choice"),
+        (
+            {"stiffness": -1.0},
+            r"^value -1\.0: stiffness is not valid \(valid: 1 to 1e\+06 N·m/rad, or None: the earlier "
+            r"result's\)$",
+        ),
+        (
+            {"stiffness": 500.0, "duration": 3.0},
+            r"^value 3\.0: duration is not valid \(valid: 20 to 600 s\)$",
+        ),
+        (
+            {"stiffness": 500.0, "criterion": "E"},
+            r"^value 'E': criterion is not a choice \(valid: widest, D, A\)$",
+        ),
     ],
 )
 def test_settings_out_of_range_are_refused(settings: dict[str, float], line: str) -> None:

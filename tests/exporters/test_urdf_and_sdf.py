@@ -124,10 +124,26 @@ def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Pa
 @pytest.mark.parametrize(
     ("link", "lost", "value", "said"),
     [
-        ("left_shin", "Iyy", 1.0, "link 'left_shin' has no parameter Iyy"),
-        ("left_shine", "", 1.0, "the URDF has no link 'left_shine'"),
-        ("left_shin", "", -1.0, "link 'left_shin' has the identified mass -1 kg"),
-        ("", "", 1.0, "the result holds no inertial_parameters"),
+        (
+            "left_shin",
+            "Iyy",
+            1.0,
+            r"^link 'left_shin' has no parameter Iyy \(valid: m, mx, my, mz, Ixx, Ixy, Iyy, Ixz, Iyz, "
+            r"Izz\)$",
+        ),
+        (
+            "left_shine",
+            "",
+            1.0,
+            r"^the URDF has no link 'left_shine' \(valid: left_shin, left_sole, left_ankle\)$",
+        ),
+        (
+            "left_shin",
+            "",
+            -1.0,
+            r"^link 'left_shin' has the identified mass -1 kg \(valid: a mass that is not negative\)$",
+        ),
+        ("", "", 1.0, r"^the result holds no inertial_parameters \(valid: a result of identify inertia\)$"),
     ],
 )
 def test_inertias_that_a_urdf_cannot_have_are_refused(

@@ -97,12 +97,28 @@ def test_bipeds_get_a_file_without_a_log(tmp_path: Path, urdf: Path) -> None:
     [
         (UR5, "no two of its chains"),
         (PANDA, "no two of its chains"),
-        (HAND, "no biped"),
+        (
+            HAND,
+            r"allegro_right_hand\.urdf: is no biped: link_3\.0 and link_11\.0 are not the lowest, "
+            r"'joint_15\.0_tip' is \(valid: two legs on which it stands\)$",
+        ),
         (BAXTER, "no two of its chains"),
         (TIAGO, "no two of its chains"),
-        (GO2, "4 legs alike"),
-        (CENTAURO, "are not the lowest"),
-        (BOLT, "no flat feet"),
+        (
+            GO2,
+            r"go2\.urdf: is no biped: 4 legs alike \(FL_calf, FR_calf, RL_calf, RR_calf\) \(valid: "
+            r"two legs\)$",
+        ),
+        (
+            CENTAURO,
+            r"centauro\.urdf: is no biped: arm1_6 and arm2_6 are not the lowest, 'contact_joint_2' is "
+            r"\(valid: two legs on which it stands\)$",
+        ),
+        (
+            BOLT,
+            r"bolt\.urdf: has no flat feet: FL_LOWER_LEG \(3\) and FR_LOWER_LEG \(3\) joints from the "
+            r"root link, where an ankle needs more \(valid: 4 joints a leg or more\)$",
+        ),
     ],
     ids=lambda value: value.stem if isinstance(value, Path) else "",
 )

@@ -183,8 +183,12 @@ CELLS = [[0.1, 0.05], [0.1, -0.05], [-0.1, 0.0]]
 @pytest.mark.parametrize(
     ("places", "said"),
     [([[0.999, 0.0], *CELLS[1:]], None), ([[1.01, 0.0], *CELLS[1:]], "a cell lies 1.01 m away; are these millimetres?"),
-     ([[-0.1, 0.0], [0.0, 0.0064], [0.1, 0.0]], None), ([[-0.1, 0.0], [0.0, 0.0058], [0.1, 0.0]], "stand in one line"),
-     (CELLS[:2], "2 places for 3 cells")],
+     ([[-0.1, 0.0], [0.0, 0.0064], [0.1, 0.0]], None),
+     ([[-0.1, 0.0], [0.0, 0.0058], [0.1, 0.0]],
+      r"^x: columns\.wrench\.left\.cells: the cells stand in one line and show no moment about it "
+      r"\(valid: 3 or more cells that span an area\)$"),
+     (CELLS[:2], r"^x: columns\.wrench\.left\.cells has 2 places for 3 cells \(valid: at: \[\[x, y\], \.\.\.\] \[m\], "
+                 r"a pair for each column of from\)$")],
 )  # fmt: skip
 def test_force_cells_span_a_sole(places: list[list[float]], said: str | None) -> None:
     """Three points of which the middle one is d aside spread by √(2/3) d across their line."""
@@ -291,7 +295,14 @@ def test_mc_rtc_versions_are_tried_up_to_the_tenth(tmp_path: Path) -> None:
     path, time = tmp_path / "log.bin", np.arange(20.0)
     save_mc_rtc(path, time, np.zeros((20, 2)), np.tile(np.eye(4), (20, 1, 1)))
     content = path.read_bytes()
-    for version, refused in ((10, "does not name its 2 joints"), (11, "is not an mc_rtc binary log")):
+    for version, refused in (
+        (
+            10,
+            r"log\.bin: does not name its 2 joints \(valid: columns\.joints in the robot file, in the "
+            r"log's order\)$",
+        ),
+        (11, "is not an mc_rtc binary log"),
+    ):
         path.write_bytes(b"ANN" + bytes([0x45 + version]) + content[4:])
         with pytest.raises(LogError, match=refused):
             mc_rtc.read(path, None, ReadLimit(path, 10**9))
