@@ -31,6 +31,7 @@ from plantar.notes import Note
 
 KEPT = Path(__file__).parent / "kept"
 PATH = Path("log.x")
+NOTES = object()
 
 
 def robot(columns: Any, joints: tuple[str, ...] = ("hip", "knee")) -> Any:
@@ -45,11 +46,11 @@ def robot(columns: Any, joints: tuple[str, ...] = ("hip", "knee")) -> Any:
     )
 
 
-def said(act: Callable[[list[Note]], object]) -> str:
-    """The error, or the notes where there is none."""
+def said(act: Callable[..., object], *given: Any, **named: Any) -> str:
+    """The error, or the notes where there is none: of a log, or those that took the place of NOTES."""
     notes: list[Note] = []
     try:
-        found = act(notes)
+        found = act(*(notes if one is NOTES else one for one in given), **named)
     except Exception as error:
         return f"{type(error).__name__}: {error}"
     if isinstance(found, MotionLog):
@@ -70,19 +71,17 @@ def test_maps_roles_and_ports(tmp_path: Path) -> None:
         {"time": "t", "joint.<joint>.position": "<joint>_degrees"},
         {"time": "t", "joint.a.position": {"from": "b", "sign": 2}},
     ]  # fmt: skip
-    lines = [said(lambda _, one=one: apply(table, robot(one), PATH)) for one in maps]
+    lines = [said(apply, table, robot(one), PATH) for one in maps]
     lists: list[Any] = ["hip", ["hip", 3], ["hip", "hip"]]
-    lines += [said(lambda _, one=one: joint_order(robot({"joints": one}))) for one in lists]
+    lines += [said(joint_order, robot({"joints": one})) for one in lists]
     entries: list[Any] = [
-        "q", {"q": 3}, {"q": {"unit": "deg"}}, {"q": {"role": "joints.position", "units": "deg"}},
+        {"q": 3}, {"q": {"unit": "deg"}}, {"q": {"role": "joints.position", "units": "deg"}},
         {"q": {"role": "joints.position", "joints": "hip"}}, {"q": {"role": "joints.position", "joints": ["a", "a"]}},
         {"q": {"role": "joints.position", "take": [3]}}, {"q": {"role": "joints.position", "take": [-1, 3]}},
         {"q": {"role": "joints.position", "sign": 0}},
     ]  # fmt: skip
-    lines += [
-        said(lambda _, one=one: ports(robot(one if one == "q" else {"ports": one}))) for one in entries[1:]
-    ]
-    lines.append(said(lambda _: ports(robot({"ports": "q"}))))
+    lines += [said(ports, robot({"ports": one})) for one in entries]
+    lines.append(said(ports, robot({"ports": "q"})))
     roles = [
         ("joints.position", 3, None), ("joints.angle", 2, None), ("imu.chest.orientation.rpy", 4, None),
         ("imu.chest.orientation.wxyz", 3, None), ("imu.chest.angular_velocity", 2, "rad/s"),
@@ -90,19 +89,15 @@ def test_maps_roles_and_ports(tmp_path: Path) -> None:
         ("wrench", 6, None),
     ]  # fmt: skip
     lines += [
-        said(
-            lambda _, one=one: role_columns(one[0], np.zeros((2, one[1])), ("hip", "knee"), PATH, unit=one[2])
-        )
-        for one in roles
+        said(role_columns, role, np.zeros((2, count)), ("hip", "knee"), PATH, unit=unit)
+        for role, count, unit in roles
     ]
     port: Any = SimpleNamespace(role="joints.position", take=None, joints=None, unit=None, sign=1.0)
     for count in (2, 3):
-        lines.append(
-            said(lambda notes, n=count: port_columns(port, np.zeros((4, n)), robot({}), PATH, notes))
-        )  # type: ignore[arg-type]
+        lines.append(said(port_columns, port, np.zeros((4, count)), robot({}), PATH, NOTES))
     limit = ReadLimit(tmp_path, memory=2**20, files=[])
     data = {name: (np.arange(3.0), np.zeros((3, 2))) for name in "abc"}
-    lines.append(said(lambda notes: log_of_ports("log", limit, None, data, {}, None, notes)))
+    lines.append(said(log_of_ports, "log", limit, None, data, {}, None, NOTES))
     assert_as_kept("\n".join(lines).replace(str(tmp_path), "FOLDER") + "\n", KEPT / "words_of_maps.txt")
 
 
@@ -118,18 +113,18 @@ def test_streams_and_logs(tmp_path: Path) -> None:
         [stream("a", ticks), stream("b", 0.5 + ticks)], [stream("a", ticks), stream("b", 0.2 + ticks)],
         [stream("a", np.array([0.0, 1.0])), stream("b", np.array([0.4, 0.6]))],
     ]  # fmt: skip
-    lines = [said(lambda notes, one=one: merge(one, limit, notes)) for one in merged]
+    lines = [said(merge, one, limit, NOTES) for one in merged]
     for strays in (1, 6):
         time = np.arange(100.0)
         time[10 : 10 + 2 * strays : 2] = 3.0
-        lines.append(said(lambda notes, t=time: increasing(stream("a", t), limit.path, notes)))
+        lines.append(said(increasing, stream("a", time), limit.path, NOTES))
     log = MotionLog("walk", ticks, {"joint.hip.position": np.full(10, np.nan), "joint.knee.position": ticks})
-    lines.append(said(lambda _: log.without_empty_joints()))
+    lines.append(said(log.without_empty_joints))
     known = robot({}, ("knee", "neck"))
     lines += [f"{note.code}, {note.severity}: {note.text}" for note in log.joint_notes(known)]
     twice = MotionLog("walk", ticks, log.columns, path=tmp_path / "a.csv")
     for other in (twice, MotionLog("walk", ticks, log.columns, path=tmp_path / "b.csv")):
-        lines.append(said(lambda _, other=other: check_names([twice, other])))
+        lines.append(said(check_names, [twice, other]))
     assert_as_kept("\n".join(lines).replace(str(tmp_path), "FOLDER") + "\n", KEPT / "words_of_streams.txt")
 
 
@@ -178,7 +173,7 @@ def test_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         pq.write_table(pa.Table.from_arrays(arrays, names), name)
     Path("folder").mkdir()
     found = [*texts, "bad.npz", "packed.npz", "none.npz", "odd.npz", *tables, "folder", "nowhere.csv"]
-    text = "".join(f"{name}: {said(lambda _, name=name: open_log(Path(name)))}\n" for name in found)
+    text = "".join(f"{name}: {said(open_log, Path(name))}\n" for name in found)
     # What libraries say is theirs.
     theirs = r"(readable (?:NPZ|Parquet|gzip|MATLAB|sqlite3)[^:]*: ).*?(?= \(valid|$)"
     text = re.sub(theirs, r"\1REASON", text, flags=re.MULTILINE)
