@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import bz2
+import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +15,11 @@ from plantar.errors import LogError
 from plantar.logs.readers.ros.bag import _check, _clocks_apart, _streams, _unusable, bag_files
 from plantar.logs.readers.ros.compressed import BrokenChunk, TooLong, decompress
 from plantar.logs.readers.ros.joint_topics import Messages, joint_columns
-from plantar.logs.readers.ros.layouts import JOINT_STATE
+from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH
+from plantar.logs.readers.ros.sensor_topics import _frame_elsewhere, assign
 from plantar.logs.readers.ros.topics import Series, Topic
 from plantar.notes import Note
+from plantar.robot.model import Placement, RobotModel
 
 PATH = Path("walk.bag")
 SECOND = 1_000_000_000
@@ -176,3 +180,63 @@ def test_chunks_that_cannot_be_unpacked() -> None:
     assert decompress("bz2", bz2.compress(b"0123456789"), 10) == b"0123456789"
     with pytest.raises(TooLong, match=r"^holds more than 9 bytes$"):
         decompress("bz2", bz2.compress(b"0123456789"), 9)
+
+
+def test_messages_that_are_no_messages_are_counted() -> None:
+    """Two of four bytes, and one whose frame claims to be longer than itself."""
+    lies = b"\0\1\0\0" + struct.pack("<iII", 0, 0, 99) + b"f\0\0\0"
+    buffer = np.frombuffer(b"abcdefgh" + lies, np.uint8)
+    made = topic("/ft", WRENCH)
+    made.add(buffer, [0, 4, 8], [4, 8, 8 + len(lies)], [1, 2, 3])
+    assert (made.count, made.broken, made.series) == (3, 3, {})
+
+
+def test_a_frame_that_is_elsewhere_is_told_with_its_distance_and_its_turn(robot: RobotModel) -> None:
+    """The sole is 90 mm below the foot; the robot file puts the sensor 50 mm and 60 degrees off it."""
+    place = Placement("left_foot", np.array([0.03, 0.04, -0.09]), np.array([0.0, 0.0, np.pi / 3]))
+    wrench = topic("/ft", WRENCH)
+    wrench.frames = ["", "/left_sole"]
+    (note,) = _frame_elsewhere("wrench 'left'", place, wrench, robot, PATH)
+    assert (note.code, note.severity) == ("sensor_frame", "warning")
+    assert note.text == (
+        "walk.bag: messages of wrench 'left' say that they are in frame left_sole, which is 50 mm and 60 deg away from "
+        "where robot.yaml puts the sensor (link: left_foot); the robot file is followed"
+    )
+    for frames in (["left_foot"], ["nowhere"], []):
+        wrench.frames = frames
+        assert not _frame_elsewhere("wrench 'left'", place, wrench, robot, PATH)
+
+
+def test_topics_to_choose_from_are_told_six_or_eight_at_a_time(robot: RobotModel) -> None:
+    many = [topic(f"/device_{place}", WRENCH) for place in range(9)]
+    six = ", ".join(f"/device_{place}" for place in range(6))
+    with pytest.raises(LogError) as refused:
+        assign(many, robot, PATH, [])
+    assert str(refused.value) == (
+        f"walk.bag: which topic is the wrench 'left'? (valid: topics: {{left: TOPIC}} in the robot file, TOPIC "
+        f"one of {six})"
+    )
+    eight = f"{six}, /device_6, /device_7"
+    told = replace(robot, topics={"left": "/other"})
+    with pytest.raises(LogError) as unknown:
+        assign(many, told, PATH, [])
+    assert str(unknown.value) == (
+        f"walk.bag: has no topic '/other' (topics in the robot file) (valid: {eight})"
+    )
+    notes: list[Note] = []
+    both = replace(robot, topics={"left": "/device_8", "right": "/device_7"})
+    chosen = assign([*many, topic("/device_9", WRENCH)], both, PATH, notes)
+    assert {key: [one.name for one in topics] for key, topics in chosen.items()} == {
+        "wrench.left": ["/device_8"], "wrench.right": ["/device_7"],
+    }  # fmt: skip
+    ignored = ", ".join(f"/device_{place}" for place in (*range(7), 9))
+    assert said(notes) == [
+        ("topics_ignored", "info", f"walk.bag: topics of no sensor in the robot file, not used: {ignored}")
+    ]
+    other = replace(robot, topics={"left": "/imu", "right": "/device_7"})
+    with pytest.raises(LogError) as kind:
+        assign([topic("/imu", IMU), *many], other, PATH, [])
+    assert str(kind.value) == (
+        f"walk.bag: topic '/imu' (topics in the robot file) is no geometry_msgs/WrenchStamped, but "
+        f"sensor_msgs/Imu (valid: {eight})"
+    )
