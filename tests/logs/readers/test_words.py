@@ -26,6 +26,7 @@ from plantar.logs.readers.ports import log_of_ports, port_columns
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.roles import role_columns
 from plantar.logs.readers.streams import Stream, increasing, merge
+from plantar.logs.readers.tables.csv_text import _Text
 from plantar.logs.save import save_log
 from plantar.notes import Note
 
@@ -190,3 +191,16 @@ def test_what_a_bag_cannot_hold_is_told(tmp_path: Path) -> None:
         save_log(MotionLog("walk", time - 2, {"joint.k.position": time}), tmp_path / "before.mcap")
     with pytest.raises(LogError, match=r"^walk, t = 2147483648 s: lies outside what a ROS stamp can hold$"):
         save_log(MotionLog("walk", time + 2.0**31, {"joint.k.position": time}), tmp_path / "after.mcap")
+
+
+def test_what_the_system_refuses_is_told_as_it_says_it(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match=r": cannot be read: Is a directory$"):
+        list(_Text(tmp_path).blocks())
+
+
+@pytest.mark.parametrize("ending", [".PARQUET", ".Csv", ".MCAP"])
+def test_endings_in_capitals_are_known(ending: str, tmp_path: Path) -> None:
+    time = np.arange(5.0)
+    save_log(MotionLog("walk", time, {"joint.k.position": time**2}), tmp_path / f"walk{ending.lower()}")
+    named = (tmp_path / f"walk{ending.lower()}").rename(tmp_path / f"WALK{ending}")
+    np.testing.assert_array_equal(open_log(named).column("joint.k.position"), time**2)
