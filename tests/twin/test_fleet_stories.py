@@ -77,6 +77,7 @@ def test_logs_have_every_second_sample_no_efforts_and_the_gain_of_the_right_sens
     said: list[str] = []
     manifest = write_fleet(tmp_path, 3, 2, motion="Tilt3", preset="sensors", seed=3, progress=said.append)
     assert manifest == tmp_path / "fleet.csv"
+    assert b"\r" not in manifest.read_bytes() + (tmp_path / "truth.csv").read_bytes()
     rows = list(csv.DictReader(manifest.open()))
     assert (
         said
