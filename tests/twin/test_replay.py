@@ -167,3 +167,23 @@ def test_a_record_without_an_attitude_cannot_be_compared(robot: RobotModel) -> N
     blind = log.without([f"imu.chest.orientation.{axis}" for axis in "wxyz"])
     with pytest.raises(DataError, match=r"^sway: holds no attitude to compare with$"):
         chest_attitude(robot, blind)
+
+
+@pytest.mark.parametrize(
+    ("column", "what"),
+    [
+        ("imu.chest.orientation.x", "the attitudes"), ("wrench.right.torque.y", "the wrenches"),
+        ("joint.left_ankle_roll.position", "the joints"),
+    ],
+)  # fmt: skip
+def test_a_record_with_a_hole_is_refused_with_its_time(column: str, what: str, robot: RobotModel) -> None:
+    log = record(sway("sway", duration=2.0))
+    hole = log.column(column).copy()
+    hole[120:180] = np.nan
+    cut = log.with_columns({column: hole})
+    with pytest.raises(DataError) as refused:
+        room.record_of(robot, cut, plan_of(robot, cut))
+    assert str(refused.value) == (
+        f"sway, t = 1.195 s: {what} have a gap: what is played must be recorded throughout (valid: gaps of 0.2 s "
+        f"or less)"
+    )
