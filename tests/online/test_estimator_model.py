@@ -122,13 +122,17 @@ def test_how_far_joints_bend_leaves_a_share_of_each_deviation() -> None:
     """A quarter of the variance of the stiffness, all of the damping's; none of what nobody knows."""
     left = [row("left", "pitch", "stiffness", -400.0, 20.0), row("left", "pitch", "damping", 10.0, 1.0)]
     right = [row("right", "roll", "stiffness", None, None), row("right", "roll", "damping", 20.0, 1.0)]
-    shares = {"stiffness": 0.25, "damping": 1.0}
+    known = {(one.foot, one.axis, one.name): one for one in (*left, *right)}
+    diagnosis = [
+        SimpleNamespace(
+            foot="left", axis="pitch", name=name, variance_shares={OF_JOINTS: share, "noise": 0.5}
+        )
+        for name, share in (("stiffness", 0.25), ("damping", 1.0))
+    ]
+    models = [SimpleNamespace(foot=foot, axis=axis) for foot, axis in (("left", "pitch"), ("right", "roll"))]
     result: Any = SimpleNamespace(
-        joint_compliance={"leg": 1e-5}, models=[SimpleNamespace(foot="left", axis="pitch"), SimpleNamespace(foot="right", axis="roll")],
-        diagnosis=[SimpleNamespace(foot="left", axis="pitch", name=name, variance_shares={OF_JOINTS: share, "noise": 0.5})
-                   for name, share in shares.items()],
-        parameter=lambda foot, axis, name: next(one for one in (*left, *right) if (one.foot, one.axis, one.name) == (foot, axis, name)),
-    )  # fmt: skip
+        joint_compliance={"leg": 1e-5}, models=models, diagnosis=diagnosis, parameter=lambda *key: known[key]
+    )
     assert _unsure(result) == {
         ("left", "pitch"): (pytest.approx(0.025), pytest.approx(0.1)),
         ("right", "roll"): (0.0, 0.0),
@@ -143,7 +147,8 @@ def test_elements_and_linear_axes_of_a_result() -> None:
         row("left", "pitch", "stiffness", 400.0, 20.0), row("left", "pitch", "slip_angle", 0.02, 0.001),
         row("left", "pitch", "slip_torque", -3.0, None), row("right", "pitch", "slip_angle", 0.01, 0.001),
         row("right", "roll", "slip_torque", 4.0, 0.5), row("right", "roll", "slip_angle", 0.03, 0.001),
-        replace(row("right", "roll", "stiffness", 300.0, 20.0), verdict="weak"), row("left", "z", "stiffness", 4e4, 1.0),
+        replace(row("right", "roll", "stiffness", 300.0, 20.0), verdict="weak"),
+        row("left", "z", "stiffness", 4e4, 1.0),
     ]  # fmt: skip
     result: Any = SimpleNamespace(parameters=rows)
     assert _elements(result) == {
