@@ -35,7 +35,7 @@ MORE = f"""
   <joint name="lift" type="prismatic"><parent link="arm"/><child link="slide"/><origin xyz="0 0 -0.3"/>
     <limit lower="0" upper="0.1" effort="90" velocity="0.5"/><dynamics damping="3"/></joint>
   <joint name="spin" type="continuous"><parent link="slide"/><child link="wheel"/><axis xyz="0 1 0"/>
-    <limit effort="7" velocity="20"/></joint>
+    <limit lower="-1" upper="1" effort="7" velocity="20"/></joint>
   <joint name="mount" type="fixed"><parent link="wheel"/><child link="camera"/>
     <origin xyz="0 0 0.05" rpy="0 0.7 0"/></joint>
   <joint name="bend" type="revolute"><parent link="arm"/><child link="thumb"/><axis xyz="1 0 0"/>

@@ -50,6 +50,7 @@ def test_results_are_refused_or_noted_as_it_is_kept(feet: dict[str, Any], tmp_pa
         lambda feet: row_of(feet).update(unknown),
         lambda feet: row_of(feet).update(unknown | {"interval95": [2.5, 80.0]}),
         lambda feet: row_of(feet).update(unknown | {"interval95": [-30.0, 0.5]}),
+        lambda feet: row_of(feet).update(unknown | {"interval95": [-30.0, -2.0]}),
         lambda feet: row_of(feet).update(unknown | {"interval95": None}),
         lambda feet: row_of(feet).update(value=None, interval95=None),
         lambda feet: row_of(feet).update(value=-3.0, verdict="weak", interval95=[-8.0, 2.0]),
