@@ -20,7 +20,7 @@ VALUES = np.arange(20.0)[:, None] * [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
 
 
 def test_a_log_of_ports_counts_from_its_first_second(tmp_path: Path) -> None:
-    """Encoders in degrees of which two joints are named, a force sensor that reads the other way; a port without role."""
+    """Encoders in degrees, two joints of them; a force sensor that reads the other way; a port without a role."""
     roles = {
         "arm": [Port("joints.position", unit="deg", joints=("hip", "knee"), take=(1, 3))],
         "ft": [Port("wrench.left", sign=-1.0)],
