@@ -87,7 +87,9 @@ def test_the_link_that_tilts_as_the_imu_does_is_taken_where_the_link_was_a_guess
     assert (sure.link, sure.others) == ("torso", ("waist", "pelvis"))
     slanted = rotation_from_rpy(np.radians([0.0, 4.0, 0.0]))
     hardly = turned_to_gravity(mount("pelvis"), stance(UP @ hangs, pelvis=slanted))
-    assert (hardly.link, hardly.others) == ("torso", ("pelvis",)), "six degrees are not clearly fewer than ten"
+    assert (hardly.link, hardly.others) == ("torso", ("pelvis",)), (
+        "six degrees are not clearly fewer than ten"
+    )
     alike = turned_to_gravity(mount("waist", "pelvis"), stance(UP, pelvis=hangs, waist=np.eye(3)))
     assert (alike.link, alike.others) == ("torso", ("waist",)), "either may be meant"
 
