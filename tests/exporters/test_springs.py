@@ -96,5 +96,6 @@ def test_offsets_are_averaged_over_motions_and_told() -> None:
     assert (found.offset, found.rest) == (-1.5, pytest.approx(1.5 / 400))
     assert said == ["info export_offset: left pitch: offset -1.5, the mean of 2 motions from -5 to 2"]
     assert spring({"offsets": offsets}, hysteresis=True)[0].offset == 0.0
+    assert spring({}, hysteresis=True, with_offset=True)[0].offset == 0.0
     one, said = spring({"offsets": offsets[1:]}, hysteresis=True, with_offset=True)
     assert (one.offset, said) == (-5.0, [])
