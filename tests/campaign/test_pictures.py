@@ -90,8 +90,50 @@ def test_a_locus_says_how_near_it_came_and_who_measured(
     campaign = SimpleNamespace(robot=None, logs={"Tilt1": "log", "Tilt3": "other"})
     plate = pictures._locus(campaign, "Tilt1", 4, "a")  # type: ignore[arg-type]
     assert asked == {"log": "log", "stance": "stance"}
-    assert plate.caption.startswith("At least 12 mm inside the support polygon. Measured by the f")
-    assert ("inverse dynamics" in plate.caption) == (hand is None)
+    who = (
+        "Measured by the foot's force sensor; the robot keeps still, the operator's hand moves it."
+        if hand
+        else "Measured by the feet's force sensors; planned by inverse dynamics on rigid feet."
+    )
+    assert plate.caption == f"At least 12 mm inside the support polygon. {who}"
+    assert plate.name == "figure04a_zmp_Tilt1"
     assert plate.title == "Figure 4a. Zero-moment point of Tilt1."
     planned_too = () if hand else ("planned",)
     assert plate.drawing == ("measured", *planned_too, {"left": 1}, "both")
+
+
+def test_each_picture_says_what_it_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pictures, "stances", lambda drawn: [name for name, _ in drawn])
+    monkeypatch.setattr(pictures, "boxes", lambda look, plan: plan)
+    monkeypatch.setattr(pictures, "look_of", lambda robot: None)
+    monkeypatch.setattr(pictures, "planned", lambda motion, robot: motion)
+    monkeypatch.setattr(pictures, "replays", lambda found, first: ([one.feet for one in found], first))
+    monkeypatch.setattr(pictures, "best_guess", lambda replayed: "LAAS")
+    monkeypatch.setattr(pictures, "LOCI", ())
+    replayed = [SimpleNamespace(feet=feet) for feet in ("rigid", "LAAS", "JRL", "identified")]
+    logs = dict.fromkeys(("Tilt1", "Tilt2", "Tilt3", *(f"Manual_{side}" for side in (
+        "right_roll", "right_pitch", "left_roll", "left_pitch", "both_pitch"
+    ))))  # fmt: skip
+    campaign = SimpleNamespace(robot=None, logs=logs, replays=replayed, replayed=())
+    tilts, sways, simulator = pictures.plates(campaign)  # type: ignore[arg-type]
+    assert (tilts.name, tilts.number, tilts.title) == (
+        "figure03_postures", 3, "Figure 3. Initial states of the tilting motions.",
+    )  # fmt: skip
+    assert (sways.name, sways.title) == ("figure05_postures", "Figure 5. Initial states of the manual sways.")
+    assert tilts.caption == sways.caption == "As planned, on rigid feet; right limbs red, left limbs blue."
+    assert tilts.drawing == ["Tilt1\nA: regular", "Tilt2\nB: right leg aside", "Tilt3\nC: right leg forward"]
+    assert sways.drawing == [
+        "Manual_right_roll\nD and G", "Manual_right_pitch\nE and G", "Manual_left_roll\nD and F",
+        "Manual_left_pitch\nE and F", "Manual_both_pitch\nE and A",
+    ]  # fmt: skip
+    assert (simulator.name, simulator.number, simulator.title) == (
+        "simulator", None, "The campaign in a simulator.",
+    )  # fmt: skip
+    assert simulator.drawing == (["rigid", "LAAS", "identified"], "identified")
+    assert simulator.caption == (
+        "Recorded, and the same joint motion in the simulator on identified feet, rigid feet and the best of the "
+        "guesses "
+        "(LAAS). A recorded attitude's bias and slow drift, a straight line in time, are taken out of each; "
+        "zeros of the "
+        "torques from the first second."
+    )

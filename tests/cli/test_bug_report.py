@@ -46,6 +46,8 @@ def test_it_holds_versions_settings_and_what_inspect_says(
         assert f"| {name} | {value} |" in text
     settings = yaml.safe_load(parts(text, "yaml")[0])
     assert settings["urdf"] == "biped.urdf"
+    summaries = [f"{kind} {name}" for kind, name in (("robot file", "robot.yaml"), ("inspect", "sway.csv"))]
+    assert re.findall("<summary>(.*)</summary>\n\n```", text) == summaries
     assert settings["topics"] == {"chest": "/imu/data"}
     inspection = json.loads(parts(text, "json")[0])
     run("inspect", private / "robot.yaml", private / "sway.csv", "--json", "--quiet")

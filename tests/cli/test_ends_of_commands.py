@@ -45,6 +45,10 @@ def test_select_names_the_smallest_set_that_is_nearly_as_good_as_the_largest(
     made_up(monkeypatch, select, load_robot=None, open_together=[], select_motions=found)
     select.run(Path("robot.yaml"), [Path("a.csv")], quiet=True)
     assert capsys.readouterr().out.splitlines()[-1] == "3 logs give nearly all the information: a, b, c."
+    alone = Selection((choice("a", 2.0),), (choice("a", 2.0),), choice("a", 2.0), None)
+    made_up(monkeypatch, select, select_motions=alone)
+    select.run(Path("robot.yaml"), [Path("a.csv")], quiet=True)
+    assert capsys.readouterr().out.splitlines()[-1] == "1 log gives nearly all the information: a."
 
 
 def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(

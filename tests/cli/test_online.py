@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from command_line import refused, run
+from plantar.cli import online
 from plantar.cli.online import _plain
 from plantar.report import live
 
@@ -48,6 +51,17 @@ def test_on_a_terminal_a_table_is_refreshed_and_goes(
     assert [f"At {seconds:.1f} s" in before for seconds in (1.0, 6.0, 12.0)] == [True] * 3
     assert "flags now" in before
     assert "flags now" not in after
+
+
+def test_the_table_is_not_drawn_more_often_than_one_can_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten pieces of a log, 40 ms apart: a table behind the third of them, and behind each third from there on."""
+    drawn: list[int] = []
+    clock = iter(0.04 * np.arange(1, 30))
+    estimator = SimpleNamespace(replay_in_pieces=lambda log, piece: range(1, 11))
+    monkeypatch.setattr(online, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    monkeypatch.setattr(online, "_so_far", lambda replay: drawn.append(replay) or "")
+    assert online._refreshed(estimator, None) == 10  # type: ignore[arg-type, comparison-overlap]
+    assert drawn == [3, 6, 9]
 
 
 def test_a_log_is_drawn(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

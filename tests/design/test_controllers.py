@@ -106,7 +106,11 @@ def test_an_order_with_joints_that_are_not_there_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     robot = hrp2.robot()
-    with pytest.raises(SettingsError, match=r"columns\.joints names 'thumb', which the URDF lacks"):
+    with pytest.raises(
+        SettingsError,
+        match=r"robot\.yaml: columns\.joints names 'thumb', which the URDF lacks \(valid: joints of the "
+        r"URDF, in the controller's order\)$",
+    ):
         ordered_joints(replace(robot, columns={"joints": [*robot.joint_names, "thumb"]}))
     file = hrp2.write(tmp_path)
     file.write_text(file.read_text() + "columns: {joints: [thumb]}\n")

@@ -107,5 +107,9 @@ def test_a_result_without_numbers_is_refused() -> None:
     empty = replace(
         result, parameters=tuple(replace(row, verdict="unidentifiable") for row in result.parameters)
     )
-    with pytest.raises(DataError, match="no stiffness and damping that could be used"):
+    with pytest.raises(
+        DataError,
+        match=r"^the result has no stiffness and damping that could be used \(valid: a result with "
+        r"some, or --stiffness without --after\)$",
+    ):
         Known.of(empty)

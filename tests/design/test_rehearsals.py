@@ -211,3 +211,28 @@ def test_the_ends_and_what_is_told_are_identified_in_more_draws_than_what_lies_b
         rows = attempt._with_results(hrp2.robot(), found)
     assert [row.results[-1] for row in rows] == [4, 2, 4, 2, 4]
     assert [row.factor for row in rows] == [0.6, 0.8, 1.0, 1.5, 2.0]
+
+
+def test_the_tightest_limit_is_told_with_its_number() -> None:
+    """Margins of 30 mm ahead and 40 mm aside at rest; each limit is the tightest of one rehearsal in turn."""
+    usual = Rehearsal(0.5, (0.03, 0.04), (0.03, 0.04), 1.0, 0.0, 0.0, 0.0)
+    for changes, used, text in (
+        ({"sole_margins": (0.01, 0.04)}, (0.02 / (0.03 - KEPT), 0, 0, 0, 0),
+         "a centre of pressure comes within 10.0 mm of a sole's border"),
+        ({"sole_margins": (0.03, 0.01)}, (0, 0.03 / (0.04 - KEPT), 0, 0, 0),
+         "a centre of pressure comes within 10.0 mm of a sole's border"),
+        ({"friction": 0.21}, (0, 0, 0.21 / FRICTION, 0, 0), "a foot needs a friction of 0.21"),
+        ({"least_load": 0.48}, (0, 0, 0, 0.52 / (1 - LIFT), 0), "a foot keeps 48 % of its load"),
+        ({"bend": 0.04}, (0, 0, 0, 0, 0.04 / attempt.BEND), "a foot is bent by 0.04 rad"),
+        ({"effort": 0.45}, (0, 0, 0, 0, 0), "a joint needs 45 % of its torque limit"),
+        ({"effort": 1.8}, (2, 2, 2, 2, 2), "a joint needs 180 % of its torque limit"),
+        ({"sole_margins": (0.0004, 0.04)}, (np.inf, 0, 0, 0, 0),
+         "a centre of pressure comes within 0.4 mm of a sole's border"),
+        ({"standing_margins": (0.004, 0.04)}, (np.inf, 0, 0, 0, 0),
+         "a centre of pressure comes within 30.0 mm of a sole's border"),
+    ):  # fmt: skip
+        found, tightest = attempt.used_by(replace(usual, **changes))  # type: ignore[arg-type]
+        np.testing.assert_allclose(found, used)
+        assert tightest == f"at 0.5 times the stiffness {text}"
+    found, tightest = attempt.used_by(replace(usual, fell="it falls"))
+    assert (np.isinf(found).all(), tightest) == (True, "at 0.5 times the stiffness: it falls")

@@ -177,7 +177,11 @@ def test_what_the_model_cannot_do_is_said(tmp_path: Path) -> None:
     beside = result(urdf)
     for entry in beside["robot_model"]["feet"].values():
         entry["bush"]["xyz"] = [0.3, 0.0, -0.08]
-    with pytest.raises(ExportError, match="does not stand over its sole"):
+    with pytest.raises(
+        ExportError,
+        match=r"^the bush of 'left' does not stand over its sole \(valid: a bush between the sole's "
+        r"edges\)$",
+    ):
         export(beside, "mujoco-contact", tmp_path / "x.xml")
 
 

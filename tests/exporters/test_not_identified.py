@@ -101,19 +101,52 @@ def test_what_cannot_be_written_is_one_clear_line(feet: dict[str, Any], urdf: Pa
     (tmp_path / "other.urdf").write_text('<robot name="o"><link name="lef_ankle"/></robot>')
     no_model = {key: value for key, value in feet.items() if key != "robot_model"}
     cases: list[tuple[dict[str, Any], str, Path | None, str]] = [
-        (feet, "matlab", None, "not a target"),
+        (
+            feet,
+            "matlab",
+            None,
+            r"^'matlab' is not a target \(valid: mjcf, mujoco-contact, drake-contact, bullet-contact, "
+            r"physx-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer, "
+            r"randomization, yaml\)$",
+        ),
         (no_model, "urdf", None, "robot_model"),
-        (_broken(feet, stiffness=-3.0), "mc_rtc", None, "not positive"),
+        (
+            _broken(feet, stiffness=-3.0),
+            "mc_rtc",
+            None,
+            r"^value -3\.0: left pitch: the stiffness is not positive; no simulator can stand on it "
+            r"\(valid: a result whose stiffness is usable\)$",
+        ),
         (_broken(feet, stiffness="stiff"), "mc_rtc", None, "not a number"),
         (_broken(feet, damping=float("nan")), "yaml", None, "not a number"),
         (feet, "urdf", tmp_path / "bomb.urdf", "DOCTYPE"),
         (feet, "urdf", tmp_path / "wide.urdf", "DOCTYPE"),
-        (feet, "urdf", tmp_path / "deep.urdf", "nested"),
-        (feet, "urdf", tmp_path / "cut.urdf", "not readable XML"),
-        (feet, "urdf", tmp_path / "other.urdf", "lef_ankle"),
-        (feet, "urdf", tmp_path / "missing.urdf", "cannot be read"),
-        (feet, "yaml", urdf, "takes no model"),
-        ({"schema": "plantar.inertia/1"}, "urdf", None, "--model"),
+        (feet, "urdf", tmp_path / "deep.urdf", r"deep\.urdf: is nested too deeply \(valid: 200 levels\)$"),
+        (
+            feet,
+            "urdf",
+            tmp_path / "cut.urdf",
+            r"cut\.urdf: is not readable XML: unclosed token: line 3, column 225$",
+        ),
+        (
+            feet,
+            "urdf",
+            tmp_path / "other.urdf",
+            r"other\.urdf: has no link 'left_ankle' \(valid: lef_ankle\)$",
+        ),
+        (
+            feet,
+            "urdf",
+            tmp_path / "missing.urdf",
+            r"missing\.urdf: cannot be read: No such file or directory$",
+        ),
+        (feet, "yaml", urdf, r"^value 'yaml': this target takes no model \(valid: no --model\)$"),
+        (
+            {"schema": "plantar.inertia/1"},
+            "urdf",
+            None,
+            r"^the result names no URDF \(valid: --model with the robot's URDF\)$",
+        ),
         ({"schema": "plantar.inertia/1"}, "sdf", None, "plantar.inertia/1"),
         ({**feet, "schema": "plantar.joints/1"}, "yaml", None, "schema"),
     ]

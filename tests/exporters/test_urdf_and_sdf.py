@@ -60,7 +60,11 @@ def test_a_model_whose_bush_lacks_an_axis_of_the_result_is_refused(
         export(feet, target, two, model=one)
     export(feet, target, one)
     if target == "drake":  # its joints have no springs of their own: a slide without one would drop the robot
-        with pytest.raises(ExportError, match="LLEG_BUSH_Z, which the result has not: it would move freely"):
+        with pytest.raises(
+            ExportError,
+            match=r"one\.sdf: has the bush of 'left' with LLEG_BUSH_Z, which the result has not: it would "
+            r"move freely \(valid: a model without bushes\)$",
+        ):
             export(rigid, target, two, model=one)
     else:
         # As a robot's own model, whose slide stays as it is there, and that is told.
@@ -120,10 +124,21 @@ def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Pa
 @pytest.mark.parametrize(
     ("link", "lost", "value", "said"),
     [
-        ("left_shin", "Iyy", 1.0, "link 'left_shin' has no parameter Iyy"),
-        ("left_shine", "", 1.0, "the URDF has no link 'left_shine'"),
+        (
+            "left_shin",
+            "Iyy",
+            1.0,
+            r"^link 'left_shin' has no parameter Iyy \(valid: m, mx, my, mz, Ixx, Ixy, Iyy, Ixz, Iyz, "
+            r"Izz\)$",
+        ),
+        (
+            "left_shine",
+            "",
+            1.0,
+            r"^the URDF has no link 'left_shine' \(valid: left_shin, left_sole, left_ankle\)$",
+        ),
         ("left_shin", "", -1.0, "link 'left_shin' has the identified mass -1 kg"),
-        ("", "", 1.0, "the result holds no inertial_parameters"),
+        ("", "", 1.0, r"^the result holds no inertial_parameters \(valid: a result of identify inertia\)$"),
     ],
 )
 def test_inertias_that_a_urdf_cannot_have_are_refused(

@@ -38,7 +38,11 @@ def test_a_fixed_link_is_where_pinocchio_has_it_from_either_end(tmp_path: Path) 
     for start, goal in (("base", "cell"), ("cell", "base"), ("plate", "cell"), ("plate", "plate")):
         expected = (place[start].inverse() * place[goal]).homogeneous
         np.testing.assert_allclose(tree.fixed_pose(start, goal), expected, atol=1e-12)
-    with pytest.raises(ExportError, match="'turning' is not rigidly fixed to 'base'"):
+    with pytest.raises(
+        ExportError,
+        match=r"arm\.urdf: link 'turning' is not rigidly fixed to 'base' \(valid: a link without a "
+        r"joint in between\)$",
+    ):
         tree.fixed_pose("base", "turning")
 
 

@@ -39,14 +39,27 @@ def test_a_step_of_unknown_size_has_no_interval() -> None:
 def test_an_outlier_names_its_recordings() -> None:
     found = alarm(Change("outlier", 3, 3, 0.2, 0.18, 0.22))
     assert found.groups == ("g3",)
-    assert "look at g3 with `plantar inspect`" in advice_for(found, [])
+    assert found.text == "left pitch stiffness of A-7 is 22.1 % above the other days on 2024-10-07"
+    assert advice_for(found, []) == (
+        "look at g3 with `plantar inspect`: another floor, load or temperature, or a fault of that day"
+    )
+    below = alarm(Change("outlier", 3, 3, -0.2, -0.22, -0.18))
+    assert below.text == "left pitch stiffness of A-7 is 18.1 % below the other days on 2024-10-07"
 
 
 def test_what_changes_together_has_one_cause() -> None:
     step = alarm(Change("step", 4, 6, 0.05, 0.04, 0.06))
-    assert "this axis alone changed" in advice_for(step, [])
-    assert "all of this foot changed" in advice_for(step, [replace(step, axis="roll")])
-    assert "both feet changed" in advice_for(step, [replace(step, foot="right")])
+    then = ". If nothing was serviced, inspect the foot; then export the new value"
+    for others, cause in (
+        ([], "this axis alone changed: a sole or a bush that was changed, or that broke on one side"),
+        ([replace(step, axis="roll")],
+         "all of this foot changed: a new sole or bush, or another gain of its force sensor"),
+        ([replace(step, foot="right")],
+         "both feet changed: look for what they share, such as temperature, the IMU or a new robot file"),
+        ([replace(step, foot="right", kind="trend")],
+         "this axis alone changed: a sole or a bush that was changed, or that broke on one side"),
+    ):  # fmt: skip
+        assert advice_for(step, others) == cause + then
     for days, cause in ((7, "both feet changed"), (8, "this axis alone changed")):
         for sign in (1, -1):
             other = replace(step, foot="right", seen=step.seen + sign * timedelta(days=days))
@@ -55,5 +68,13 @@ def test_what_changes_together_has_one_cause() -> None:
 
 def test_a_trend_says_when_to_export_again() -> None:
     found = alarm(Change("trend", 0, 9, np.log1p(0.01), 0.008, 0.012))
-    assert "goes up by 1 % a month" in found.text
-    assert "5 % off within 5 months" in advice_for(found, [])
+    assert found.text == (
+        "left pitch stiffness of A-7 goes up by 1 % a month since about 2024-10-04, seen on 2024-10-13"
+    )
+    pace = "at this pace it is 5 % off within 5 months: export again by then"
+    assert advice_for(found, []) == (
+        f"the rubber ages, or the force sensor's gain drifts (does it still read the weight?); {pace}"
+    )
+    assert advice_for(found, [replace(found, foot="right")]) == (
+        f"both feet go the same way: the rubber's age, or the season; {pace}"
+    )

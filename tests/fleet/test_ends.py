@@ -58,7 +58,10 @@ def test_what_stops_a_group_is_one_line_and_stops_no_other(error: Exception, sai
 
 
 def test_a_scheduler_that_is_gone_and_a_store_that_cannot_be_used_end_the_run() -> None:
-    with pytest.raises(PlantarError, match="the scheduler is gone; what is finished stays"):
+    with pytest.raises(
+        PlantarError,
+        match=r"^the scheduler is gone; what is finished stays \(valid: the same command again\)$",
+    ):
         _take("group", ended(status="cancelled"), _State(1))
     with pytest.raises(PlaceError, match="is full"):
         _take("group", ended(PlaceError("is full")), _State(1))

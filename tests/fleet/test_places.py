@@ -12,6 +12,7 @@ import pytest
 from fsspec.implementations.memory import MemoryFileSystem
 
 from plantar.errors import PlantarError
+from plantar.fleet import places
 from plantar.fleet.places import (
     PlaceError,
     Store,
@@ -81,10 +82,10 @@ def test_whatever_a_store_says_is_one_line(act: Callable[[str], object]) -> None
 
 def test_a_store_that_cannot_be_used_is_told_apart_from_a_log_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(PlaceError, match="cannot be written"):
+    with pytest.raises(PlaceError, match=r"x: cannot be written: File exists$"):
         Store(str(tmp_path / "file")).write("x", b"")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(PlaceError, match="cannot be read"):
+    with pytest.raises(PlaceError, match=r"folder: cannot be read: Is a directory$"):
         Store(str(tmp_path)).read("folder")
 
 
@@ -119,7 +120,7 @@ def test_remote_files_are_brought_under_their_name(tmp_path: Path) -> None:
     assert stamp_of(place).size == 5
     assert abs((datetime.now(UTC) - time_of(place)).total_seconds()) < 60
     assert found_at("memory://logs/*.csv") == ["memory:///logs/day.csv"]
-    with pytest.raises(PlantarError, match=r"none\.csv: does not exist"):
+    with pytest.raises(PlantarError, match=r"^memory://logs/none\.csv: does not exist$"):
         brought("memory://logs/none.csv", tmp_path)
 
 
@@ -163,3 +164,80 @@ def test_a_folder_of_a_store_is_as_large_as_its_files_and_another_with_any_of_th
     assert stamp_of("memory://logs/bag") == before
     system.pipe_file("/logs/bag/inner/b", b"124")
     assert stamp_of("memory://logs/bag") != before, "written anew"
+
+
+@pytest.mark.parametrize("place", ["local", "memory://fleet/many"])
+def test_many_files_are_read_a_few_at_a_time_and_come_in_their_order(
+    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(places, "AT_ONCE", 2)
+    store = Store(place if "://" in place else str(tmp_path / place))
+    for name in "abcd":
+        store.write(f"{name}.json", name.encode())
+    asked: list[list[str]] = []
+    monkeypatch.setattr(
+        Store, "_batch", lambda own, names, batch=Store._batch: (asked.append(names), batch(own, names))[1]
+    )
+    names = [f"{name}.json" for name in "dxbca"]
+    assert list(store.read_each(names)) == [b"d", None, b"b", b"c", b"a"]
+    assert asked == [names[:2], names[2:4], names[4:]]
+    assert list(store.read_each([])) == []
+
+
+def test_a_file_of_a_store_that_is_no_object_store_appears_when_it_is_whole(tmp_path: Path) -> None:
+    store = Store(f"file://{tmp_path}/made/later")
+    store.write("units/a.json", b"1")
+    assert (tmp_path / "made" / "later" / "units" / "a.json").read_bytes() == b"1"
+    assert store.names("units") == ["units/a.json"], "no part of it is left"
+    assert store.names("units/none") == []
+    assert store.path("units/a.json") == f"file://{tmp_path}/made/later/units/a.json"
+    assert Store("out").path("units/a.json") == str(Path("out", "units", "a.json"))
+
+
+def test_a_stores_file_has_the_tag_or_the_time_that_its_store_tells() -> None:
+    assert places._change({"size": 3}) == ""
+    assert places._change({"created": 1, "mtime": 2, "LastModified": None}) == "2"
+    assert places._change({"mtime": 2, "etag": "x", "ETag": "y"}) == "y"
+    assert places._change({"updated": "u", "created": "c"}) == "u"
+
+
+def test_what_is_wrong_with_a_place_is_said_once() -> None:
+    """As the system says it, with the store's file before it; an error of plantar's own as it is."""
+    store = Store("s3://b/fleet")
+    denied = OSError(13, "Permission denied", "/x")
+    assert str(store._unusable("cannot be read", "a.json", denied)) == (
+        "s3://b/fleet/a.json: cannot be read: Permission denied"
+    )
+    own = PlantarError("needs a package", path="s3://b")
+    assert str(store._unusable("cannot be read", "a.json", own)) == "s3://b: needs a package"
+    assert str(places._unreadable("a.csv", denied)) == "a.csv: cannot be read: Permission denied"
+    assert (
+        str(places._unreadable("a.csv", FileNotFoundError(2, "No such file", "/x")))
+        == "a.csv: does not exist"
+    )
+    assert places._unreadable("a.csv", own) is own
+    with pytest.raises(PlantarError, match=r"^none\.csv: does not exist$"):
+        brought("none.csv", Path("x"))
+    with pytest.raises(PlantarError, match=r"^none\.csv: does not exist$"):
+        time_of("none.csv")
+    with pytest.raises(PlantarError, match=r"^memory://none/x\.csv: does not exist$"):
+        stamp_of("memory://none/x.csv")
+    with pytest.raises(PlantarError, match=r"^nope://b/x: cannot be read: Protocol not known: nope$"):
+        stamp_of("nope://b/x")
+
+
+def test_a_files_time_is_in_whole_seconds_of_utc_and_its_stamp_in_nanoseconds(tmp_path: Path) -> None:
+    log = tmp_path / "a.csv"
+    log.write_bytes(b"12345")
+    os.utime(log, ns=(0, 1_234_567_891_500_000_000))
+    assert time_of(str(log)) == datetime(2009, 2, 13, 23, 31, 31, tzinfo=UTC)
+    assert stamp_of(str(log)) == places.Stamp(5, "1234567891500000000")
+
+
+def test_a_folder_of_a_store_is_brought_with_all_that_is_in_it(tmp_path: Path) -> None:
+    system = fsspec.filesystem("memory")
+    system.pipe_file("/bags/one/part.db3", b"1")
+    system.pipe_file("/bags/one/inner/metadata.yaml", b"2")
+    found = brought("memory://bags/one", tmp_path)
+    assert found == tmp_path / "one"
+    assert (found / "part.db3").read_bytes() + (found / "inner" / "metadata.yaml").read_bytes() == b"12"

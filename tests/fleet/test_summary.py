@@ -131,7 +131,10 @@ def test_failures_are_counted_by_what_they_say() -> None:
 
 
 def test_a_rate_that_cannot_be_is_refused() -> None:
-    with pytest.raises(SettingsError, match="false alarms"):
+    with pytest.raises(
+        SettingsError,
+        match=r"^value 0\.0: false alarms is not valid \(valid: 0\.001 to 100 a robot and year\)$",
+    ):
         summary_of(results([]), failures(), 0.0)
 
 

@@ -14,6 +14,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.fleet.places import Stamp, stamp_of
 from plantar.fleet.run import _known_key
 from plantar.fleet.unit import Failure, Unit, UnitInput, UnitRow, contents_of, read_unit, unit_file, unit_key
+from plantar.fleet.work import task_key
 
 LOG = UnitInput("s3://b/x.csv", "x.csv", "fit", "ab" * 32, Stamp(12, "today"))
 ROW = UnitRow("left", "pitch", "stiffness", "N.m/rad", 0.1 + 0.2, 1.0, None, 5.0, "usable", "kelvin_voigt")
@@ -64,3 +65,10 @@ def test_a_groups_key_is_known_where_no_log_has_changed_since_it_was_read(tmp_pa
     assert _known_key(group, robot, FeetSettings(), read) is None, "it is another now"
     log.unlink()
     assert _known_key(group, robot, FeetSettings(), read) is None, "it is gone"
+
+
+def test_a_workers_key_is_the_one_that_the_driver_knows() -> None:
+    task: Any = SimpleNamespace(robot=SimpleNamespace(sha256="robot"), settings=FeetSettings(cutoff=4.0))
+    unseen = UnitInput("s3://b/y.csv", "y.csv", "validate", "cd" * 32, Stamp(1, "now"))
+    content = [("fit", "x.csv", "ab" * 32), ("validate", "y.csv", "cd" * 32)]
+    assert task_key(task, [LOG, unseen]) == unit_key("robot", content, FeetSettings(cutoff=4.0))

@@ -20,7 +20,11 @@ def log(name: str, **columns: list[float]) -> MotionLog:
 
 def test_two_logs_of_one_name_are_refused() -> None:
     check_names([log("one"), log("two")])
-    with pytest.raises(DataError, match="two logs are called 'one'"):
+    with pytest.raises(
+        DataError,
+        match=r"^two logs are called 'one': one and one \(valid: file names that differ, since results "
+        r"name motions by them\)$",
+    ):
         check_names([log("one"), log("two"), log("one")])
 
 
@@ -61,7 +65,11 @@ def test_one_recording_with_other_columns_is_refused_where_force_sensors_read_th
 @pytest.mark.parametrize("first", [150, 250, 340])
 def test_recordings_that_overlap_by_more_than_a_tenth_of_the_shorter_are_one(first: int) -> None:
     for later in (0.0, 1e9):
-        with pytest.raises(DataError, match="hold the same recording, or a part of one"):
+        with pytest.raises(
+            DataError,
+            match=r"^one and two hold the same recording, or a part of one \(valid: each once; told twice, "
+            r"intervals come out too narrow, and a log that was fitted validates nothing\)$",
+        ):
             check_names([recording("one", slice(0, 400)), recording("two", slice(first, 600), later)])
 
 
@@ -69,7 +77,11 @@ def test_simulations_without_noise_may_begin_alike() -> None:
     one = recording("one")
     apart = {name: np.where(np.arange(600) < 240, own, own + 1.0) for name, own in SIGNALS.items()}
     check_names([one, recording("two", **apart)])
-    with pytest.raises(DataError, match="hold the same recording, or a part of one"):
+    with pytest.raises(
+        DataError,
+        match=r"^one and two hold the same recording, or a part of one \(valid: each once; told twice, "
+        r"intervals come out too narrow, and a log that was fitted validates nothing\)$",
+    ):
         check_names([one, recording("two", slice(5, 600), **apart)])
 
 
@@ -79,7 +91,11 @@ def test_recordings_that_have_little_in_common_are_two() -> None:
     rest = np.zeros(600)
     check_names([recording("rest", a=rest, b=rest), recording("rest too", a=rest, b=rest)])
     gap = np.where(np.arange(600) % 2, np.nan, SIGNALS["a"])
-    with pytest.raises(DataError, match="hold the same recording"):
+    with pytest.raises(
+        DataError,
+        match=r"^one and copy hold the same recording, or a part of one \(valid: each once; told twice, "
+        r"intervals come out too narrow, and a log that was fitted validates nothing\)$",
+    ):
         check_names([recording("one", a=gap), recording("copy", a=gap)])
 
 
@@ -89,9 +105,14 @@ def test_what_is_no_log_or_no_robot_is_said_in_one_line(tmp_path: Path) -> None:
     assert list(logs_of(one, robot)) == [one]
     assert list(logs_of([one], robot)) == [one]
     for wrong in (3, [3]):
-        with pytest.raises(LogError, match="value 'int': is not a log"):
+        with pytest.raises(
+            LogError,
+            match=r"^value 'int': is not a log \(valid: a MotionLog, the path of a log, or a list of them\)$",
+        ):
             list(logs_of(wrong, robot))  # type: ignore[arg-type]
-    with pytest.raises(RobotError, match="is not a robot"):
+    with pytest.raises(
+        RobotError, match=r"^value 'int': is not a robot \(valid: a RobotModel or the path of a robot file\)$"
+    ):
         robot_of(3)  # type: ignore[arg-type]
 
 
@@ -102,9 +123,17 @@ def test_logs_read_in_turn_fit_beside_what_is_kept_of_those_before(tmp_path: Pat
     size = open_log(paths[0]).size
     few = open_in_turn(paths, None, lambda log: log.size // 5, 2 * size, ahead={})  # type: ignore[arg-type]
     assert [log.name for log in few] == ["one", "two", "three"]
-    with pytest.raises(NoRoom, match=r"two.csv: does not fit beside the other logs, which leave 800 bytes"):
+    with pytest.raises(
+        NoRoom,
+        match=r"two\.csv: does not fit beside the other logs, which leave 800 bytes \(valid: fewer logs "
+        r"at a time, or more with --memory \(memory= in Python\)\)$",
+    ):
         list(open_in_turn(paths, None, lambda log: log.size, size + 800, ahead={}))  # type: ignore[arg-type]
-    with pytest.raises(NoRoom, match=r"one.csv: holds 100 rows"):
+    with pytest.raises(
+        NoRoom,
+        match=r"one\.csv: holds 100 rows x 2 columns, 1\.6 kB as numbers \(valid: at most 1\.6 kB, or "
+        r"more with --memory \(memory= in Python\), or a shorter log\)$",
+    ):
         list(open_in_turn(paths, None, lambda log: log.size, size - 1, ahead={}))  # type: ignore[arg-type]
 
 
@@ -125,7 +154,11 @@ def test_tables_that_are_read_ahead_are_read_no_second_time(tmp_path: Path) -> N
     turns = iter(open_in_turn([first, broken, last], robot, len, ahead=ahead, memory=None))
     log = next(turns)
     assert (log.name, [*log.columns]) == ("a", ["joint.left_ankle_roll.position"])
-    with pytest.raises(LogError, match=r"joint\.knee\.position"):
+    with pytest.raises(
+        LogError,
+        match=r"b\.csv, column 'joint\.knee\.position', t = 0 s, value 'x': is not a number \(valid: a "
+        r"number, or an empty cell where nothing was recorded\)$",
+    ):
         next(turns)
 
 

@@ -48,10 +48,14 @@ def test_values_become_float64() -> None:
 
 def test_texts_are_no_numbers() -> None:
     with pytest.raises(
-        LogError, match=r"tilt, column 'joint\.a\.position': holds no numbers: could not convert"
+        LogError,
+        match=r"^tilt, column 'joint\.a\.position': holds no numbers: could not convert string to "
+        r"float: np\.str_\('on'\)$",
     ):
         MotionLog("tilt", np.arange(2.0), {"joint.a.position": np.array(["1", "on"])})
-    with pytest.raises(LogError, match="tilt, column 'time': holds no numbers"):
+    with pytest.raises(
+        LogError, match=r"^tilt, column 'time': holds no numbers: could not convert string to float: 'a'$"
+    ):
         MotionLog("tilt", ["a", "b"], {})  # type: ignore[arg-type]
 
 
@@ -61,9 +65,9 @@ def test_lengths_and_time_are_checked() -> None:
     for bad in ([0.0, 0.0, 1.0], [0.0, 2.0, 1.0], [0.0, np.nan, 1.0]):
         with pytest.raises(LogError, match=r"column 'time', t = .* does not increase"):
             MotionLog("tilt", np.array(bad), {})
-    with pytest.raises(LogError, match=r"column 'time', t = 2 s, value 1\.5: does not increase"):
+    with pytest.raises(LogError, match=r"^tilt, column 'time', t = 2 s, value 1\.5: does not increase$"):
         MotionLog("tilt", np.array([0.0, 1.0, 2.0, 1.5, 1.0]), {})
-    with pytest.raises(LogError, match="fewer than two samples"):
+    with pytest.raises(LogError, match=r"^tilt, column 'time': holds fewer than two samples$"):
         MotionLog("tilt", np.array([0.0]), {})
 
 
@@ -71,7 +75,8 @@ def test_a_missing_column_is_named_with_its_neighbours() -> None:
     log = make(joint__knee__position=[1.0, 2.0, 3.0])
     with pytest.raises(
         LogError,
-        match=r"column 'joint\.kne\.position': is missing \(valid: the log has joint\.knee\.position\)",
+        match=r"^tilt, column 'joint\.kne\.position': is missing \(valid: the log has "
+        r"joint\.knee\.position\)$",
     ):
         log.column("joint.kne.position")
     assert log.has("joint.knee.position")
@@ -84,10 +89,16 @@ def test_a_sensor_of_another_name_is_answered_with_the_names_that_the_log_has() 
     assert log.devices("wrench") == ["wrench.lfoot"]
     assert log.devices("imu") == []
     with pytest.raises(
-        LogError, match=r"is missing \(valid: in the robot file wrench\.name as the log has it: lfoot\)"
+        LogError,
+        match=r"^tilt, column 'wrench\.left\.force\.z': is missing \(valid: in the robot file "
+        r"wrench\.name as the log has it: lfoot\)$",
     ):
         log.column("wrench.left.force.z")
-    with pytest.raises(LogError, match=r"is missing \(valid: the log has wrench\.lfoot\.force\.z\)"):
+    with pytest.raises(
+        LogError,
+        match=r"^tilt, column 'wrench\.lfoot\.force\.x': is missing \(valid: the log has "
+        r"wrench\.lfoot\.force\.z\)$",
+    ):
         log.column("wrench.lfoot.force.x")
 
 
@@ -99,7 +110,11 @@ def test_vectors_are_stacked_in_the_contracts_order() -> None:
     np.testing.assert_array_equal(log.wrench("left")[0], [5, 4, 3, 2, 1, 0])
     assert log.orientation("chest") is None
     partial = MotionLog("tilt", np.arange(3.0), {"imu.chest.orientation.w": np.ones(3)})
-    with pytest.raises(LogError, match=r"imu\.chest\.orientation\.x"):
+    with pytest.raises(
+        LogError,
+        match=r"^tilt, column 'imu\.chest\.orientation\.x': is missing \(valid: the log has "
+        r"imu\.chest\.orientation\.w\)$",
+    ):
         partial.orientation("chest")
 
 

@@ -130,7 +130,14 @@ def test_a_plan_starts_and_ends_at_rest() -> None:
 @pytest.mark.parametrize(
     ("motion", "options", "message"),
     [
-        ("Tilt9", {}, r"unknown motion 'Tilt9' \(valid: Tilt1"),
+        (
+            "Tilt9",
+            {},
+            r"^unknown motion 'Tilt9' \(valid: Tilt1, Tilt2, Tilt3, Tilt4, Tilt5, Tilt6, "
+            r"Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch, "
+            r"Manual_both_pitch, Myrand4, Myrand5, Squat, Walk8, Walk12, Walk16, Walk20, WalkSlow8, "
+            r"WalkSlow12, WalkQuick8, WalkQuick12, WalkTurn, WalkInPlace\)$",
+        ),
         (
             "Tilt1",
             {"sway": 0.12},
@@ -145,7 +152,8 @@ def test_a_plan_starts_and_ends_at_rest() -> None:
         (
             "Tilt1",
             {"apart": 0.08},  # soles are 138 mm wide
-            r"the soles would stand on each other, 58 mm deep .valid: feet farther apart",
+            r"^hrp2_like: the soles would stand on each other, 58 mm deep \(valid: feet farther "
+            r"apart\)$",
         ),
         ("Manual_right_roll", {"sway": 0.2}, r"t = [\d.]+ s: Manual_right_roll: .*polygon by [\d.]+ mm"),
     ],
@@ -160,7 +168,12 @@ def test_a_limit_of_speed_and_one_of_torque_are_held(tmp_path) -> None:
     file = hrp2.write(tmp_path)
     urdf = (tmp_path / "hrp2.urdf").read_text()
     for old, new, message in (
-        ('velocity="5.5"', 'velocity="0.01"', "LEG_JOINT3' passes its speed limit"),
+        (
+            'velocity="5.5"',
+            'velocity="0.01"',
+            r"^t = 5\.16 s: Squat: joint 'LLEG_JOINT3' passes its speed limit by 0\.476 \(valid: at "
+            r"most 0\.01 rad/s\)$",
+        ),
         ('effort="260"', 'effort="5"', r"LEG_JOINT[23]' needs [\d.]+ N·m .valid: at most 5 N·m"),
     ):
         assert old in urdf
@@ -184,7 +197,11 @@ def test_other_bipeds_move_too(motion: str, tmp_path) -> None:
 def test_a_robot_without_two_feet_is_refused(tmp_path) -> None:
     file = hrp2.write(tmp_path)
     file.write_text(file.read_text().replace("  left:", "  third:"))
-    with pytest.raises(MotionError, match="a left and a right foot"):
+    with pytest.raises(
+        MotionError,
+        match=r"robot\.yaml: motions are planned for a left and a right foot and a chest that carries "
+        r"an IMU \(valid: a robot file with imu, left and right\)$",
+    ):
         plan_motion("Tilt1", load_robot(file))
 
 
@@ -197,6 +214,11 @@ def test_profiles() -> None:
     assert np.abs(sway).max() == pytest.approx(1.0, abs=1e-3)
     assert bows(time, 5.0, 10.0, 2).max() == pytest.approx(1.0)
     assert window(time, 5.0, 25.0, 2.0)[time == 15] == 1.0
+    late = sweep(time, 20.0, 30.0, 0.1, 0.3)
+    quick = (time > 22) & (time < 28)  # where nothing is eased
+    along = time[quick] - 20
+    assert late[quick] == pytest.approx(np.sin(2 * np.pi * (0.1 * along + 0.01 * along**2)))
+    assert not late[(time <= 20) | (time >= 30)].any()
     swept = sweep(time, 0.0, 50.0, 0.1, 0.5)
     crossings = np.flatnonzero(np.diff(np.sign(swept)))
     assert len(crossings) == pytest.approx(2 * 50 * 0.3, abs=2)  # twice the mean frequency

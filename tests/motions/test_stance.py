@@ -85,3 +85,28 @@ def test_a_foot_that_cannot_reach_its_place_says_which_joints_stop_it(
     }
     with pytest.raises(MotionError, match=re.escape(f"foot cannot reach its place, it {said}")):
         check_reached(body, start.configuration, places, "Walk")
+
+
+def test_the_centre_of_mass_stands_over_the_middle_of_feet_that_stand_askew(body: Body) -> None:
+    """The left foot 40 mm ahead and 60 mm aside of where it stood."""
+    usual, start = stand(body, None, {}), stand(body, None, {"left": (0.04, 0.06)})
+    moved = start.soles["left"].translation - usual.soles["left"].translation
+    np.testing.assert_allclose(moved, [0.04, 0.06, 0.0], atol=1e-6)
+    np.testing.assert_allclose(start.soles["right"].translation, usual.soles["right"].translation, atol=1e-6)
+    here, before = (body.centre_of_mass(one.configuration)[:2] for one in (start, usual))
+    np.testing.assert_allclose(here - before, [0.02, 0.03], atol=1e-3)
+
+
+def test_the_least_room_is_that_of_the_leg_joint_that_moved_farthest_to_its_limit(body: Body) -> None:
+    """The left knee up towards 2.0, the right ankle down towards -1.0; others stay, and have no say."""
+    limit(body, KNEES, 0.0, 2.0)
+    limit(body, ANKLES, -1.0, 0.7)
+    q, moved = body.neutral(), np.zeros(body.model.nq)
+    assert body.room(q, moved) == np.inf, "nothing moved"
+    for name, angle, way in ((KNEES[0], 1.2, 1.0), (ANKLES[1], -0.7, -0.5), (KNEES[1], 1.9, 0.05)):
+        place = body.model.joints[body.model.getJointId(name)].idx_q
+        q[place], moved[place] = angle, way
+    assert body.room(q, moved) == pytest.approx(0.3)
+    place = body.model.joints[body.model.getJointId(ANKLES[1])].idx_q
+    moved[place] = 0.0
+    assert body.room(q, moved) == pytest.approx(0.8)

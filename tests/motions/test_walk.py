@@ -25,6 +25,10 @@ from plantar.motions.stance import stand
 from plantar.motions.walk import walk_plan
 from plantar.twin.robots import hrp2
 
+JUMPS = (
+    r"^hrp2_like, t = 1\.\d+ s: Walk: the robot would leave the floor, since its legs jump from one posture to another "
+    r"\(valid: a smaller or slower walk\)$"
+)
 BUILT = Gait(step=0.12, period=1.0, turn=0.1, steps=3, trial=0)
 
 
@@ -142,7 +146,7 @@ def test_legs_that_jump_from_one_posture_to_another_are_refused(monkeypatch: pyt
 
     monkeypatch.setattr(walk, "_follow", jumping)
     body = Body(hrp2.robot())
-    with pytest.raises(MotionError, match=r"t = 1\.\d+ s: Walk: the robot would leave the floor") as caught:
+    with pytest.raises(MotionError, match=JUMPS) as caught:
         walk_plan(body, "Walk", stand(body, hrp2.postures().standing, {}), replace(BUILT, steps=1))
     assert "\n" not in str(caught.value)
 
@@ -152,7 +156,14 @@ def test_legs_that_jump_from_one_posture_to_another_are_refused(monkeypatch: pyt
     [
         ("Walk99", {}, r"t = [\d.]+ s: Walk99: the (left|right) foot cannot reach its place"),
         ("Walk12", {"period": 0.1}, r"value 0.1: Walk12: no period of a step .valid: 0.6 to 6 s"),
-        ("Walkabout", {}, r"unknown motion 'Walkabout' .*Walk12"),
+        (
+            "Walkabout",
+            {},
+            r"^unknown motion 'Walkabout' \(valid: Tilt1, Tilt2, Tilt3, Tilt4, Tilt5, Tilt6, "
+            r"Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch, "
+            r"Manual_both_pitch, Myrand4, Myrand5, Squat, Walk8, Walk12, Walk16, Walk20, WalkSlow8, "
+            r"WalkSlow12, WalkQuick8, WalkQuick12, WalkTurn, WalkInPlace\)$",
+        ),
     ],
 )
 def test_what_no_robot_walks_is_refused(name: str, options: dict[str, float], message: str) -> None:
@@ -166,3 +177,10 @@ def test_a_walk_is_as_it_is_kept() -> None:
     ways = {name: plan.positions[:, place] for place, name in enumerate(plan.joints)}
     told = described({"plan": plan, "ways": ways})
     assert_as_kept(told, Path(__file__).parent / "kept" / "walk.txt", share=1e-4, least=1e-5)
+
+
+def test_a_name_that_is_no_walks_is_told_with_those_that_are() -> None:
+    with pytest.raises(
+        MotionError, match=r"^unknown walk 'Walk' \(valid: Walk8, Walk12, Walk16, Walk20, WalkSlow8, "
+    ):
+        gait_of("Walk", period=None)

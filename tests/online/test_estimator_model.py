@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from biped_robot import write_robot
 from estimator_text import untold
 from plantar import _core
-from plantar.online.estimator import FootEstimator
+from plantar.errors import DataError
+from plantar.online.estimator import OF_JOINTS, FootEstimator, _elements, _linear, _row, _unsure
 from plantar.online.estimator_model import Element, estimator_model
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import DelayEstimate, Parameter
@@ -109,3 +112,57 @@ def test_a_broken_file_is_refused_with_its_line(
 ) -> None:
     with pytest.raises(RuntimeError, match=complaint):
         _core.FootEstimator(model_of(tmp_path).replace(*change))
+
+
+def row(foot: str, axis: str, name: str, value: float | None, std: float | None) -> Parameter:
+    return Parameter(foot, axis, name, "", value, std, None, None, "usable", "")  # type: ignore[arg-type]
+
+
+def test_how_far_joints_bend_leaves_a_share_of_each_deviation() -> None:
+    """A quarter of the variance of the stiffness, all of the damping's; none of what nobody knows."""
+    left = [row("left", "pitch", "stiffness", -400.0, 20.0), row("left", "pitch", "damping", 10.0, 1.0)]
+    right = [row("right", "roll", "stiffness", None, None), row("right", "roll", "damping", 20.0, None)]
+    known = {(one.foot, one.axis, one.name): one for one in (*left, *right)}
+    diagnosis = [
+        SimpleNamespace(
+            foot="left", axis="pitch", name=name, variance_shares={OF_JOINTS: share, "noise": 0.5}
+        )
+        for name, share in (("stiffness", 0.25), ("damping", 1.0))
+    ]
+    models = [SimpleNamespace(foot=foot, axis=axis) for foot, axis in (("left", "pitch"), ("right", "roll"))]
+    result: Any = SimpleNamespace(
+        joint_compliance={"leg": 1e-5}, models=models, diagnosis=diagnosis, parameter=lambda *key: known[key]
+    )
+    assert _unsure(result) == {
+        ("left", "pitch"): (pytest.approx(0.025), pytest.approx(0.1)),
+        ("right", "roll"): (0.0, 0.0),
+    }
+    result.joint_compliance = {}
+    assert _unsure(result) == {}
+    assert _unsure(None) == {}
+
+
+def test_elements_and_linear_axes_of_a_result() -> None:
+    rows = [
+        row("left", "pitch", "stiffness", 400.0, 20.0), row("left", "pitch", "slip_angle", 0.02, 0.001),
+        row("left", "pitch", "slip_torque", -3.0, None), row("right", "pitch", "slip_angle", 0.01, 0.001),
+        row("right", "roll", "slip_torque", 4.0, 0.5), row("right", "roll", "slip_angle", 0.03, 0.001),
+        replace(row("right", "roll", "stiffness", 300.0, 20.0), verdict="weak"),
+        row("left", "z", "stiffness", 4e4, 1.0),
+    ]  # fmt: skip
+    result: Any = SimpleNamespace(parameters=rows)
+    assert _elements(result) == {
+        ("left", "pitch"): Element(0.02, -3.0, 3.0),
+        ("right", "roll"): Element(0.03, 4.0, 0.5),
+    }
+    assert _linear(result) == [("left", "pitch")]
+    assert (_elements(None), _linear(None)) == ({}, [])
+
+
+def test_arrays_of_another_size_are_refused_with_their_names() -> None:
+    with pytest.raises(DataError, match=r"^attitude: an array of shape \(3,\) \(valid: \(4,\)\)$"):
+        _row("attitude", [0.0, 0.0, 1.0], 4)
+    assert _row("attitude", None, 4) is None
+    found = _row("velocity", [1, 2], 2)
+    assert found is not None
+    assert (found.dtype, found.tolist()) == (float, [1.0, 2.0])

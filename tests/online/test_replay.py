@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.online.estimates import FIELDS, Contact, Flag
-from plantar.online.replay import Replay
+from plantar.online.replay import IDENTIFY, Replay
 from plantar.results.feet_rows import Parameter
 
 
@@ -127,7 +127,10 @@ def test_a_stiffness_that_rests_on_what_was_told_is_weak_and_its_damping_is_not(
         if row.axis == "pitch"
     }
     assert rows["stiffness"].verdict == "weak"
-    assert "slip torque that was given" in rows["stiffness"].reason
+    assert (rows["stiffness"].reason, rows["stiffness"].advice) == (
+        "motions too small to test the slip torque that was given, on which this stiffness depends",
+        "bend the foot beyond its slip angle to either side, as walking does",
+    )
     assert rows["damping"].verdict == "usable"
 
 
@@ -138,6 +141,28 @@ def test_a_damping_below_zero_is_none() -> None:
 
     for half in (0.5, 10.0, 19.9):
         assert judged(half).verdict == "unidentifiable"
-        assert "negative" in judged(half).reason
-        assert "--wrench-delay" in judged(half).advice
+        assert (judged(half).reason, judged(half).advice) == (
+            "negative, which no bush is: force sensors that are late look like this",
+            "say how late they are (--wrench-delay), or let `identify feet` find it and give its result (--result)",
+        )
     assert "negative" not in judged(20.1).reason, "it may be above"
+
+
+def test_what_is_wrong_with_a_foot_is_said_of_both_numbers_and_the_delay_first() -> None:
+    """The left foot stands well; of the right one the roll alone is doubted, by a memory and then by a delay."""
+    late = "torques follow deflections as if the force sensors' delay were not the one that was given"
+    memory = "the rubber has hysteresis: motions of another size have another stiffness"
+    small = "motions too small to show hysteresis: in larger ones the stiffness may be lower"
+    known = {
+        "roll_stiffness": 300.0,
+        "roll_stiffness_half_width": 3.0,
+        "roll_damping": 20.0,
+        "roll_damping_half_width": 0.5,
+    }
+    for flags, reason in (
+        (Flag.ROLL_MEMORY | Flag.LATE_WRENCH, late), (Flag.ROLL_MEMORY | Flag.ROLL_UNTESTED, memory),
+        (Flag.ROLL_UNTESTED, small), (Flag.PITCH_MEMORY | Flag.PITCH_UNTESTED, ""),
+    ):  # fmt: skip
+        rows = [row for row in ended(flags=float(flags), **known).parameters if row.axis == "roll"]
+        assert [(row.name, row.reason) for row in rows] == [("stiffness", reason), ("damping", reason)]
+        assert {row.advice for row in rows} == {IDENTIFY if reason else None}

@@ -33,6 +33,10 @@ def test_who_gave_a_result_is_not_sent_for_one() -> None:
     small = replace(ROWS[0], verdict="weak", reason="motions too small", advice=IDENTIFY)
     assert judged([small], [], identified=False) == [small]
     assert judged([small], [], identified=True) == [replace(small, advice=AGAIN)]
+    assert IDENTIFY == "run `plantar identify feet` on logs of this robot, and give its result (--result)"
+    assert AGAIN == (
+        "run `plantar identify feet` again, on this log and on larger motions of this robot, and give that result"
+    )
 
 
 @pytest.mark.parametrize(("code", "severity", "verdict"), [
@@ -48,7 +52,11 @@ def test_a_log_is_checked_as_for_a_batch_fit(robot: RobotModel) -> None:
     assert log_notes(robot, log) == ()
     columns = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
     degrees = log.with_columns({column: np.degrees(log.column(column)) for column in columns})
-    with pytest.raises(DataError, match="degrees"):
+    with pytest.raises(
+        DataError,
+        match=r"^sway: columns 'imu\.chest\.angular_velocity\.\*': 57 times the orientation's rate, "
+        r"which looks like degrees per second \(valid: rad/s\)$",
+    ):
         log_notes(robot, degrees)
 
 
@@ -63,7 +71,15 @@ def test_what_a_batch_result_says_of_the_orientation_holds_here_too() -> None:
     )
     notes = result_notes(FeetResult("biped", (), {}, "kelvin_voigt", (), (), (), (), said))
     assert sorted(note.code for note in notes) == ["attitude_late", "attitude_tilted", "orientation_late"]
-    assert all(note.severity == "warning" and "sway: " in note.text for note in notes)
+    assert all(note.severity == "warning" for note in notes)
+    assert {note.text for note in notes} == {
+        f"in the result: sway: {text}; here it is used as it is"
+        for text in (
+            "behind a low-pass of 200 ms",
+            "follows its accelerometer",
+            "200 ms behind the accelerometer",
+        )
+    }
     for note in notes:
         assert judged(ROWS, [note], identified=True)[0].verdict == "weak"
     assert result_notes(None) == ()

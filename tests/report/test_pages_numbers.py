@@ -59,6 +59,7 @@ def test_what_is_used_of_each_log_adds_up_by_motion_and_foot() -> None:
         Phase("sway", "left", 1.0, 6.0, "double", True, None),
         Phase("sway", "left", 6.0, 21.0, "double", False, "slides"),
         Phase("sway", "left", 21.0, 21.03, "transition", False, "a moment, which nobody reads"),
+        Phase("still", "left", 2.0, 2.0, "double", True, None),
     ]
     table = used_table(phases)
     assert heads(table) == ["motion", "foot", "length [s]", "used [s]", "share", "left out because"]
@@ -66,6 +67,7 @@ def test_what_is_used_of_each_log_adds_up_by_motion_and_foot() -> None:
         ["walk", "left", "8.00", "2.00", "25 %", "tips (2.0 s); air (4.0 s)"],
         ["walk", "right", "10.0", "10.0", "100 %", "nothing left out"],
         ["sway", "left", "20.0", "5.00", "25 %", "slides (15.0 s)"],
+        ["still", "left", "0", "0", "–", "nothing left out"],
     ]
 
 
@@ -78,7 +80,8 @@ def test_another_choice_stands_beside_the_result() -> None:
     theirs = replace(K, value=320.0, interval95=(310.0, 330.0))
     others = (replace(SCORE, mean_abs_error=1.25, zero_mean_abs=9.0), replace(SCORE, motion="nobody's"))
     shared = Comparison("one offset", {}, (theirs, replace(theirs, foot="right")), others)
-    parameters, errors = comparison_tables(replace(RESULT, comparisons=(shared,)))
+    alone = replace(SCORE, motion="told by nobody else")
+    parameters, errors = comparison_tables(replace(RESULT, validation=(SCORE, alone), comparisons=(shared,)))
     assert heads(parameters)[3:] == ["unit", "this result", "one offset", "difference"]
     assert texts(parameters) == [["left", "pitch", "K", "N·m/rad", "400 ± 8", "320 ± 10", "−20.0 %"]]
     assert heads(errors)[4:] == ["this result [N·m]", "one offset [N·m]", "offset alone [N·m]"]
@@ -257,3 +260,14 @@ def test_days_are_a_mean_of_their_recordings() -> None:
     assert days.groups == (("g0", "g1"), ("g2",))
     assert days.weights(0.2, 0.1).tolist() == pytest.approx([1 / (0.01 + 0.04 / 2), 1 / (0.01 + 0.04)])
     assert series.days == [10, 10, 12, "g3"]
+
+
+def test_settings_within_settings_are_told_four_levels_deep() -> None:
+    """What lies deeper is told as it would be written in JSON; so is an empty one."""
+    deep: dict[str, object] = {"f": {"g": 1}}
+    for name in "edcba":
+        deep = {name: deep}
+    table = settings_table(deep | {"none": {}, "some": [1, 2.5, "x"], "wrench_delay": 0.004})
+    assert texts(table)[:3] == [
+        ["a.b.c.d.e", '{"f": {"g": 1}}'], ["none", "{}"], ["some", "1, 2.500, x"],
+    ]  # fmt: skip

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from plantar.report.verdict import BEYOND, foot_verdicts, limits, reach, trust
+from plantar.report.verdict import BEYOND, first_given, foot_verdicts, limits, reach, symbol, trust
 from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.feet_rows import Verdict
 from report_walks import standing_result
@@ -106,3 +106,8 @@ def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
 def test_any_number_that_is_known_has_a_limit_beyond_which_it_is_not(verdict: Verdict, told: bool) -> None:
     parameters = [replace(one, verdict=verdict) for one in ROWS]
     assert (BEYOND in reach(replace(standing_result(), parameters=parameters))) == told
+
+
+def test_terms_of_richer_models_are_told_by_their_names_and_numbers_without_advice_give_none() -> None:
+    assert [symbol(name) for name in ("stiffness", "damping", "slip_torque")] == ["K", "C", "slip torque"]
+    assert first_given(ROWS) == {ADVICE: "left pitch K", FASTER: "left roll K"}

@@ -90,7 +90,8 @@ def test_an_outline_that_was_guessed_is_widened_one_of_shapes_is_doubted(
     ('<link name="right_foot"/>', "right"), ('<link name="left_sole"/>', "left"), ('<link name="foot"/>', "right"),
     ('<link name="plate"/><link name="left_foot"/><joint name="a" type="fixed"><parent link="left_foot"/>'
      '<child link="plate"/></joint>', "left"),
-    ('<link name="box"/>', "'box' is not called a foot"), ("", "has no links"),
+    ('<link name="box"/>', r"rig\.urdf: is no biped: it has no joints, and 'box' is not called a foot \(valid: two "
+r"legs, or one foot\)$"), ("", r"rig\.urdf: has no links \(valid: a biped\)$"),
 ])  # fmt: skip
 def test_a_foot_alone_on_a_rig_is_the_root_of_a_urdf_without_joints(
     links: str, found: str, tmp_path: Path

@@ -66,7 +66,12 @@ def test_a_log_without_a_leg_is_refused_whether_or_not_it_has_its_wrenches(
 ) -> None:
     leg = [name for name in whole.columns if name.startswith("joint.left_")]
     for columns in (leg, [*LEFT, *leg]):
-        with pytest.raises(LogError, match="do not hold any joint between IMU and left foot"):
+        with pytest.raises(
+            LogError,
+            match=r"thin\.csv: columns 'joint\.\*\.position': do not hold any joint between IMU and left "
+            r"foot of the URDF \(left_ankle_pitch, left_ankle_roll, left_leg_x and 2 more\) \(valid: "
+            r"columns joint\.<joint>\.position; for other names a map, `columns` in the robot file\)$",
+        ):
             guessed(tmp_path, without(whole, *columns))
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from plantar.errors import PlantarError
+from biped_robot import make_robot
+from plantar.errors import PlantarError, RobotError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.twin import fleet
@@ -87,5 +89,15 @@ def test_a_preset_with_robots_or_logs_of_its_own_is_refused(tmp_path: Path, pres
 
 
 def test_a_fleet_is_no_more_than_a_hundred_thousand_logs(tmp_path: Path) -> None:
-    with pytest.raises(PlantarError, match="are too many logs"):
+    with pytest.raises(PlantarError, match=r"^value 100100: are too many logs \(valid: at most 100000\)$"):
         write_fleet(tmp_path, 1001, 100, motion=MOTION, preset="sensors", seed=0, progress=lambda _: None)
+
+
+def test_an_ankle_that_turns_otherwise_is_refused(tmp_path: Path) -> None:
+    """The twin's rubber is exchanged through an ankle that turns in pitch and then in roll."""
+    robot = make_robot(tmp_path)
+    assert ankle_joints(robot, "left") == ("left_ankle_pitch", "left_ankle_roll")
+    feet = {**robot.feet, "left": replace(robot.feet["left"], ankle="left_ankle")}
+    said = r": the left ankle does not turn in pitch, then in roll \(valid: the built-in robot\)$"
+    with pytest.raises(RobotError, match=said):
+        ankle_joints(replace(robot, feet=feet), "left")

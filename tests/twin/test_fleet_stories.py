@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from plantar.errors import PlantarError
 from plantar.logs.motion_log import MotionLog
 from plantar.twin import fleet
 from plantar.twin.bush import PAPER
@@ -28,6 +29,12 @@ def test_rubber_differs_by_three_per_cent_between_robots_and_by_half_a_per_cent_
 
 
 def test_a_new_sole_is_eight_per_cent_stiffer_on_one_foot_and_months_are_a_twelfth_of_a_year() -> None:
+    _, new, _ = stories(3, 5, 2, 0.02)
+    assert new.shares["left"][2] / new.shares["left"][1] == pytest.approx(1.08, abs=0.03), (
+        "from day 2 of 5 on"
+    )
+    assert new.shares["right"][2] / new.shares["right"][1] == pytest.approx(1.0, abs=0.03)
+    assert new.shares["left"][0] != new.shares["right"][0], "each foot has rubber of its own"
     ageing, sole, drift = stories(3, 400, 2, 0.02)
     left, right = sole.shares["left"], sole.shares["right"]
     assert left[200:].mean() / left[:200].mean() == pytest.approx(1.08, abs=0.002)
@@ -70,6 +77,7 @@ def test_logs_have_every_second_sample_no_efforts_and_the_gain_of_the_right_sens
     said: list[str] = []
     manifest = write_fleet(tmp_path, 3, 2, motion="Tilt3", preset="sensors", seed=3, progress=said.append)
     assert manifest == tmp_path / "fleet.csv"
+    assert b"\r" not in manifest.read_bytes() + (tmp_path / "truth.csv").read_bytes()
     rows = list(csv.DictReader(manifest.open()))
     assert (
         said
@@ -95,3 +103,13 @@ def test_logs_have_every_second_sample_no_efforts_and_the_gain_of_the_right_sens
         stiffness = getattr(PAPER[row["foot"]], f"{row['axis']}_stiffness")
         assert float(row["stiffness"]) == pytest.approx(stiffness * told[0].shares[row["foot"]][1], rel=1e-5)
         assert (row["group"], row["event"]) == ("robot_01_2026-01-02", "ageing")
+
+
+def test_more_logs_than_a_disk_should_hold_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(PlantarError, match=r"^value 100001: are too many logs \(valid: at most 100000\)$"):
+        write_fleet(tmp_path, 1, 100_001, motion="Tilt3", preset="sensors", seed=0, progress=lambda _: None)
+    with pytest.raises(
+        PlantarError,
+        match=r"^value 'imperfect': has robots or logs of its own \(valid: sensors, realistic\)$",
+    ):
+        write_fleet(tmp_path, 1, 1, motion="Tilt3", preset="imperfect", seed=0, progress=lambda _: None)

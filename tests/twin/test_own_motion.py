@@ -76,7 +76,7 @@ def test_feet_have_to_be_level(lifted: float, said: str | None, robot: RobotMode
 def test_a_motion_lasts_a_second_at_least(seconds: float, robot: RobotModel, tmp_path: Path) -> None:
     path = table(tmp_path, seconds, neck=0.0)
     if seconds < 1:
-        with pytest.raises(LogError, match=r"lasts 0.99 s \(valid: 1 to 3600 s\)"):
+        with pytest.raises(LogError, match=r"mine\.csv: lasts 0\.99 s \(valid: 1 to 3600 s\)$"):
             own_plan(path, robot)
     else:
         assert own_plan(path, robot).time[-1] == pytest.approx(1.0)
@@ -84,12 +84,16 @@ def test_a_motion_lasts_a_second_at_least(seconds: float, robot: RobotModel, tmp
 
 def test_what_holds_no_joint_or_a_gap_is_told_with_its_time(robot: RobotModel, tmp_path: Path) -> None:
     with pytest.raises(
-        LogError, match=r"holds no position of a joint of this robot.*'joint.left_leg_x.position'"
+        LogError,
+        match=r"mine\.csv: holds no position of a joint of this robot \(valid: columns such as "
+        r"'joint\.left_leg_x\.position'\)$",
     ):
         own_plan(table(tmp_path, name="body", neck=0.0), robot)
     path = table(tmp_path, neck=0.0)
     lines = path.read_text().splitlines()
     lines[31] = lines[31].split(",")[0] + ",,0"
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(LogError, match=r"t = 5.3 s: a joint has no position"):
+    with pytest.raises(
+        LogError, match=r"mine\.csv, t = 5\.3 s: a joint has no position \(valid: a number in every row\)$"
+    ):
         own_plan(path, robot)

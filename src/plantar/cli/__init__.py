@@ -177,7 +177,7 @@ def _print_version(asked: bool) -> None:
 
 def _root(
     version: bool = typer.Option(
-        False, "--version", is_eager=True, callback=_print_version, help="Print the version and exit."
+        False, "--version", callback=_print_version, help="Print the version and exit."
     ),
 ) -> None:
     """Options that stand before the command."""

@@ -111,8 +111,6 @@ def _is_log(place: str) -> bool:
     """A file with the ending of a log, or the folder of a ROS 2 bag, whose parts are no logs of their own."""
     name = name_of(place)
     known = TRUTH not in name and any(name.lower().endswith(ending) for ending in FORMATS)
-    if is_remote(place):
-        return known
     path = Path(place)
     return (path / BAG).is_file() if path.is_dir() else known and not (path.parent / BAG).is_file()
 

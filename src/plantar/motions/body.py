@@ -82,7 +82,7 @@ class Body:
                     self.model.lowerPositionLimit[joint.idx_q],
                     self.model.upperPositionLimit[joint.idx_q],
                 )
-                margin = min(room, max(high - low, 0.0) / 4) if posture is None else 0.0
+                margin = min(room, (high - low) / 4) if posture is None else 0.0
                 if low < high:
                     q[joint.idx_q] = np.clip(q[joint.idx_q], low + margin, high - margin)
         return q

@@ -61,7 +61,7 @@ def stand(
     over = np.mean([target.act(_middle(body, name)) for name, target in targets.items()], axis=0)
     if posture is None:
         q[:3] = centre - [0.0, 0.0, middle[2]]
-        q = _with_bent_knees(body, q, targets, np.array([over[0], over[1], 0.0]))
+        q = _with_bent_knees(body, q, targets, over)
     else:
         q[:3] = centre - [middle[0], 0.0, middle[2]]
         q = body.solve(q, [*body.foot_tasks(targets), body.chest_task(body.pose(q, CHEST))], q, steps=60)

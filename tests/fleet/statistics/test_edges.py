@@ -124,6 +124,15 @@ def test_a_trend_takes_a_month_of_days(days: int, told: bool) -> None:
     assert ("trend" in [change.kind for change in changes]) == told
 
 
+@pytest.mark.parametrize(("days", "told"), [(5, True), (4, False)])
+def test_a_trend_takes_five_days(days: int, told: bool) -> None:
+    time = np.linspace(0.0, 60.0, days)
+    values = 0.02 * time + 1e-4 * np.array([1.0, -1.0, 1.0, -1.0, 1.0])[:days]
+    found = changes._trends(time, values, np.ones(days), (), (), 0.5)
+    assert [change.kind for change in found] == ["trend"] * told
+    assert [(change.first, change.seen) for change in found] == [(0, days - 1)] * told
+
+
 def test_a_step_is_measured_from_two_months_beside_it() -> None:
     """Farther away the level is another, by too little to be a step."""
     time = np.arange(0.0, 300.0, 2.0)

@@ -22,14 +22,36 @@ from plantar.robot.model import RobotModel
     [
         ({"joint.neck.position": {"from": "nick", "unit": "deg"}}, "neck_deg"),
         ({"joint.neck.position": {"from": "neck_deg", "unit": "N"}}, "deg"),
-        ({"joint.neck.angle": "neck_deg"}, "no column of plantar"),
+        (
+            {"joint.neck.angle": "neck_deg"},
+            r"robot\.yaml: columns\.joint\.neck\.angle is no column of plantar \(valid: time, "
+            r"joint\.<joint>\.position, imu\.<name>\.angular_velocity, wrench\.<name>\.force, "
+            r"\.\.\.\)$",
+        ),
         ({"imu.chest.orientation": {"from": ["neck_deg"] * 4, "order": "zyxw"}}, "wxyz"),
-        ({"wrench.left.force": ["neck_deg"]}, "three sources"),
-        ({"joint.neck.position": {"from": "neck_deg", "sign": 2}}, "1 or -1"),
+        (
+            {"wrench.left.force": ["neck_deg"]},
+            r"robot\.yaml, value 1: columns\.wrench\.left\.force needs three sources$",
+        ),
+        (
+            {"joint.neck.position": {"from": "neck_deg", "sign": 2}},
+            r"robot\.yaml, value '2': columns\.joint\.neck\.position: sign \(valid: 1 or -1\)$",
+        ),
         ({"joint.neck.position": {"of": "neck_deg"}}, "from"),
-        ({"joint.neck.position": 7}, "no column 7"),
-        ({"joint.<joint>.position": {"from": "<joint>_rad"}}, "no column is called like '<joint>_rad'"),
-        ({"joint.<joint>.position": "neck_deg"}, "one <joint> here and there"),
+        (
+            {"joint.neck.position": 7},
+            r"log\.csv: columns\.joint\.neck\.position: no column 7 \(valid: 0 to 1\)$",
+        ),
+        (
+            {"joint.<joint>.position": {"from": "<joint>_rad"}},
+            r"robot\.yaml: columns\.joint\.<joint>\.position: no column is called like '<joint>_rad' "
+            r"\(valid: time, neck_deg\)$",
+        ),
+        (
+            {"joint.<joint>.position": "neck_deg"},
+            r"robot\.yaml: columns\.joint\.<joint>\.position needs one <joint> here and there "
+            r"\(valid: joint\.<joint>\.position: \{from: <joint>_angle, unit: deg\}\)$",
+        ),
         ({"joint.neck.position": "<joint>_deg"}, "<joint>_deg"),
     ],
 )
@@ -46,10 +68,14 @@ def test_a_map_that_cannot_hold_is_one_clear_line(
 @pytest.mark.parametrize(
     ("columns", "where"),
     [
-        ({"joints": ["a", "b", "a"]}, "columns.joints names a joint twice"),
+        (
+            {"joints": ["a", "b", "a"]},
+            r"robot\.yaml, value 'a': columns\.joints names a joint twice \(valid: each joint once\)$",
+        ),
         (
             {"ports": {"sh_q": {"role": "joints.position", "joints": ["b", "b", "a"]}}},
-            "columns.ports.sh_q.joints",
+            r"robot\.yaml, value 'b': columns\.ports\.sh_q\.joints names a joint twice \(valid: each "
+            r"joint once\)$",
         ),
     ],
 )
@@ -86,10 +112,18 @@ def test_one_line_maps_the_columns_of_all_joints(tmp_path: Path) -> None:
 
 def test_a_joint_vector_of_another_length_or_without_names_is_refused(tmp_path: Path) -> None:
     (tmp_path / "walk.sh_q").write_text("0.0 1 2 3\n0.1 1 2 3\n0.2 1 2 3\n")
-    with pytest.raises(LogError, match=r"columns\.joints"):
+    with pytest.raises(
+        LogError,
+        match=r"walk\.sh_q: does not name its 3 joints \(valid: columns\.joints in the robot file, in "
+        r"the log's order\)$",
+    ):
         open_log(tmp_path / "walk.sh_q")
     robot = make_robot(tmp_path / "robot", columns={"joints": ["neck"]})
-    with pytest.raises(LogError, match="3 values a sample, not 1"):
+    with pytest.raises(
+        LogError,
+        match=r"walk\.sh_q: joints\.position: the log has 3 values a sample, not 1 \(valid: "
+        r"columns\.joints in the robot file, in the log's order\)$",
+    ):
         open_log(tmp_path / "walk.sh_q", robot)
 
 

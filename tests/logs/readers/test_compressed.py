@@ -49,7 +49,15 @@ def test_what_is_damaged_or_packed_otherwise_is_broken(kind: str, limit: ReadLim
 
 
 @pytest.mark.parametrize(
-    ("left", "refused"), [(1000, "a chunk unpacks to more than 900 bytes"), (800, "from a file of 10 bytes")]
+    ("left", "refused"),
+    [
+        (1000, r"a\.bag: a chunk unpacks to more than 900 bytes \(valid: at most 900 bytes a chunk\)$"),
+        (
+            800,
+            r"a\.bag: unpacks to more than 268 MB \(valid: at most 268 MB from a file of 10 bytes: "
+            r"268 MB and 100 times its size\)$",
+        ),
+    ],
 )
 def test_no_chunk_is_longer_than_recorders_write_nor_than_its_file_may_hold(
     left: int, refused: str, limit: ReadLimit, monkeypatch: pytest.MonkeyPatch

@@ -145,7 +145,7 @@ def test_names_count_where_there_are_as_many_as_columns(tmp_path: Path) -> None:
     assert (values.tolist(), names) == ([[1, 2], [3, 4]], [])
     assert [note.text for note in notes] == ["log.txt ends in the middle of a line; that line is left out"]
     path.write_text("# nothing\n\n")
-    with pytest.raises(LogError, match="holds no numbers"):
+    with pytest.raises(LogError, match=r"log\.txt: holds no numbers \(valid: one sample a line\)$"):
         read_numbers(path, ReadLimit(path), notes)
 
 
@@ -179,8 +179,12 @@ CELLS = [[0.1, 0.05], [0.1, -0.05], [-0.1, 0.0]]
 @pytest.mark.parametrize(
     ("places", "said"),
     [([[0.999, 0.0], *CELLS[1:]], None), ([[1.01, 0.0], *CELLS[1:]], "a cell lies 1.01 m away; are these millimetres?"),
-     ([[-0.1, 0.0], [0.0, 0.0064], [0.1, 0.0]], None), ([[-0.1, 0.0], [0.0, 0.0058], [0.1, 0.0]], "stand in one line"),
-     (CELLS[:2], "2 places for 3 cells")],
+     ([[-0.1, 0.0], [0.0, 0.0064], [0.1, 0.0]], None),
+     ([[-0.1, 0.0], [0.0, 0.0058], [0.1, 0.0]],
+      r"^x: columns\.wrench\.left\.cells: the cells stand in one line and show no moment about it "
+      r"\(valid: 3 or more cells that span an area\)$"),
+     (CELLS[:2], r"^x: columns\.wrench\.left\.cells has 2 places for 3 cells \(valid: at: \[\[x, y\], \.\.\.\] \[m\], "
+                 r"a pair for each column of from\)$")],
 )  # fmt: skip
 def test_force_cells_span_a_sole(places: list[list[float]], said: str | None) -> None:
     """Three points of which the middle one is d aside spread by √(2/3) d across their line."""
@@ -210,7 +214,7 @@ def test_how_large_a_log_may_be(tmp_path: Path) -> None:
     with pytest.raises(LogError):
         limit.unpack(1)
     limit.columns(10_000)
-    with pytest.raises(LogError, match="more than 10000 columns"):
+    with pytest.raises(LogError, match=r"log\.bin: has more than 10000 columns \(valid: fewer columns\)$"):
         limit.columns(10_001)
     limit.numbers(most // 8, 1)
     with pytest.raises(LogError):

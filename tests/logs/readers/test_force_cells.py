@@ -47,12 +47,24 @@ def test_a_sensor_with_one_horizontal_reading_is_no_set_of_cells(tmp_path: Path)
     ("cells", "expected"),
     [
         ({"from": NAMES}, "needs the cells' places"),
-        ({"from": NAMES, "at": AT[:3]}, "3 places for 4 cells"),
-        ({"from": NAMES, "at": [[100, 60], [100, -60], [-80, -60], [-80, 60]]}, "are these millimetres"),
+        (
+            {"from": NAMES, "at": AT[:3]},
+            r"robot\.yaml: columns\.wrench\.left\.cells has 3 places for 4 cells \(valid: at: \[\[x, "
+            r"y\], \.\.\.\] \[m\], a pair for each column of from\)$",
+        ),
+        (
+            {"from": NAMES, "at": [[100, 60], [100, -60], [-80, -60], [-80, 60]]},
+            r"robot\.yaml: columns\.wrench\.left\.cells: a cell lies 100 m away; are these "
+            r"millimetres\? \(valid: at: \[\[x, y\], \.\.\.\] \[m\], a pair for each column of from\)$",
+        ),
         ({"from": NAMES, "at": [[0.1, 0], [0.05, 0], [0, 0], [-0.1, 0]]}, "in one line"),
         ({"from": NAMES[:2], "at": AT[:2]}, "in one line"),
         ({"from": NAMES, "at": "front"}, "needs the cells' places"),
-        ({"from": NAMES, "at": AT, "unit": "N.m"}, "no such unit of force"),
+        (
+            {"from": NAMES, "at": AT, "unit": "N.m"},
+            r"robot\.yaml, value 'N\.m': columns\.wrench\.left\.cells: no such unit of force \(valid: "
+            r"N, kN, kgf\)$",
+        ),
     ],
 )
 def test_places_that_cannot_be_are_one_clear_line(

@@ -35,7 +35,11 @@ def test_every_unit_is_what_its_definition_says() -> None:
 
 
 def test_a_unit_of_another_quantity_is_refused_with_those_that_fit() -> None:
-    with pytest.raises(LogError, match=r"no such unit of torque \(valid: N\.m, N\.mm, kN\.m, kgf\.cm\)"):
+    with pytest.raises(
+        LogError,
+        match=r"^robot\.yaml, value 'kgf': columns\.x: no such unit of torque \(valid: N\.m, N\.mm, "
+        r"kN\.m, kgf\.cm\)$",
+    ):
         factor("kgf", "torque", "columns.x", Path("robot.yaml"))
 
 
@@ -92,5 +96,9 @@ def test_a_vector_of_another_length_is_refused_with_both_lengths() -> None:
     for role, length in (("imu.a.angular_velocity", 3), ("wrench.l", 6), ("imu.a.orientation.wxyz", 4)):
         with pytest.raises(LogError, match=rf"the log has {length - 1} values a sample, not {length}"):
             role_columns(role, np.zeros((2, length - 1)), (), Path("a.log"), unit=None)
-    with pytest.raises(LogError, match=r"has 3 values a sample, not 2 \(valid: columns\.joints"):
+    with pytest.raises(
+        LogError,
+        match=r"^a\.log: joints\.position: the log has 3 values a sample, not 2 \(valid: "
+        r"columns\.joints in the robot file, in the log's order\)$",
+    ):
         role_columns("joints.position", np.zeros((2, 3)), ["a", "b"], Path("a.log"), unit=None)

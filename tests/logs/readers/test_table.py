@@ -200,7 +200,11 @@ def test_unknown_endings_and_missing_files(tmp_path: Path) -> None:
         open_log(tmp_path / "nowhere.csv")
     folder = tmp_path / "folder.csv"
     folder.mkdir()
-    with pytest.raises(LogError, match=r"folder\.csv"):
+    with pytest.raises(
+        LogError,
+        match=r"folder\.csv: is a directory without logs \(valid: a ROS bag, or YARP dumps with "
+        r"data\.log\)$",
+    ):
         open_log(folder)
 
 

@@ -137,7 +137,11 @@ def test_pages_are_counted_by_their_own_headers(tmp_path: Path) -> None:
             assert 0 < headers < 0.05 * column.total_uncompressed_size
             small = ReadLimit(path, files=[])
             small.unpack(small.left - 1000)
-            with pytest.raises(LogError, match="unpacks to"):
+            with pytest.raises(
+                LogError,
+                match=r"log\.parquet: unpacks to 268 MB or more \(valid: at most 268 MB from a file of 0 bytes: "
+                r"268 MB and 100 times its size\)$",
+            ):
                 check_pages(handle, start, column.total_compressed_size, small)
             with pytest.raises(BrokenPage):
                 check_pages(handle, start + 1, column.total_compressed_size, limit)
@@ -151,7 +155,11 @@ def test_a_page_that_unpacks_to_more_than_its_numbers_is_not_unpacked(
     pa_parquet.write_table(pa.table({"time": np.arange(1e4)}), path, use_dictionary=False, compression="zstd")
     monkeypatch.setattr(ReadLimit, "unpacks_to", 50_000)
     monkeypatch.setattr(ReadLimit, "numbers", lambda *_: None)
-    with pytest.raises(LogError, match="unpacks to 80 kB"):
+    with pytest.raises(
+        LogError,
+        match=r"log\.parquet: unpacks to 80 kB or more \(valid: at most 50 kB from a file of 11\.8 kB: "
+        r"268 MB and 100 times its size\)$",
+    ):
         open_log(path)
 
 

@@ -75,7 +75,7 @@ def test_level_and_upright_lines_keep_the_points_of_each_square() -> None:
 def test_a_long_name_is_cut_and_has_its_room() -> None:
     assert slanted("step_12_no_fall_1_again", 0.0, 0.0).text == "step_12_no_fall_1…"
     assert (
-        room_below(["walk"])
+        room_below(["walk", "a"])
         < room_below(["a_walk_of_ten"])
         < room_below(["x" * 18])
         == room_below(["x" * 90])

@@ -118,3 +118,10 @@ def test_a_long_campaign_stays_within_its_points() -> None:
     long = replace(track, time=time, used=np.ones(len(time), dtype=bool), values=values)
     chart = loop_charts(walk_result(), [long])["left", "pitch"]
     assert 300 < len(points(chart, "measured many")) <= MOST_POINTS
+
+
+def test_a_track_that_lacks_torques_or_angles_of_an_axis_has_no_loop() -> None:
+    (track,) = walk_tracks(motions=["walk_1"])
+    for missing in ("pitch.torque", "pitch.deflection"):
+        less = replace(track, values={name: one for name, one in track.values.items() if name != missing})
+        assert ("left", "pitch") not in loop_charts(walk_result(), [less])

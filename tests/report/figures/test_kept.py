@@ -34,7 +34,13 @@ def drawn(figure: Any, name: str) -> Iterator[str]:
     """What is on a figure: its size and legends, then panel by panel."""
     legends = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
     yield described(
-        {"size": figure.get_size_inches(), "legends": legends, "title": figure.get_suptitle()}, name
+        {
+            "size": figure.get_size_inches(),
+            "legends": legends,
+            "where": [legend._outside_loc for legend in figure.legends],
+            "title": figure.get_suptitle(),
+        },
+        name,
     )
     for place, panel in enumerate(figure.axes):
         legend = panel.get_legend()

@@ -59,11 +59,15 @@ def test_one_motion_by_its_name_into_axes_of_ones_own(result: FeetResult) -> Non
 
 
 def test_what_cannot_be_drawn_is_refused_with_what_can(result: FeetResult) -> None:
-    with pytest.raises(DataError, match=r"no foot has that name \(valid: left, right\)"):
+    with pytest.raises(DataError, match=r"^value 'middle': no foot has that name \(valid: left, right\)$"):
         plot_torque(result, "middle", "pitch")
-    with pytest.raises(DataError, match=r"no axis has that name \(valid: pitch, roll\)"):
+    with pytest.raises(DataError, match=r"^value 'yaw': no axis has that name \(valid: pitch, roll\)$"):
         plot_torque(result, "left", "yaw")
-    with pytest.raises(DataError, match="the result holds no residuals to draw"):
+    with pytest.raises(
+        DataError,
+        match=r"^the result holds no residuals to draw \(valid: a result of identify_feet, or "
+        r"FeetResult\.load of a folder with residuals\.parquet\)$",
+    ):
         plot_torque(replace(result, residuals=None), "left", "pitch")
     table = result.residuals
     assert table is not None

@@ -10,6 +10,7 @@ import pytest
 from plantar.robot.model import load_robot
 from plantar.twin import PAPER
 from plantar.twin.robots import hrp2
+from plantar.twin.robots import hrp2_facts as facts
 from plantar.twin.simulation.mjcf import Scene, mjcf_text
 
 LEG = {  # right leg, lower and upper limit [rad]
@@ -113,3 +114,26 @@ def test_the_robot_file_reads_back(tmp_path) -> None:
     robot = load_robot(hrp2.write(tmp_path))
     assert set(robot.feet) == {"left", "right"}
     assert robot.joint_names == hrp2.robot().joint_names
+
+
+def test_masses_are_scaled_in_mirrored_pairs_and_the_chest_grows_and_moves() -> None:
+    """The waist by 2, both thighs by 3; the chest's box by 1.1, 1.2 and 1.3, its centre by -10 mm in z."""
+    nominal = hrp2._nominal()
+    keys = hrp2._symmetric_keys(nominal)
+    assert len(keys) < len(nominal.bodies) == len({body.name for body in nominal.bodies})
+    change = np.zeros(len(keys) + 6)
+    change[keys.index("WAIST")], change[keys.index("LEG_LINK2")] = np.log(2.0), np.log(3.0)
+    change[len(keys) :] = [*np.log([1.1, 1.2, 1.3]), 0.0, 0.0, -0.1]
+    scaled = hrp2._scaled(nominal, change)
+    for before, after in zip(nominal.bodies, scaled.bodies, strict=True):
+        share = {"WAIST": 2.0, "RLEG_LINK2": 3.0, "LLEG_LINK2": 3.0}.get(before.name, 1.0)
+        assert after.mass == pytest.approx(share * before.mass)
+        (box,) = before.shapes
+        chest = before.name == facts.IMU_LINK
+        moved = np.array([0.0, 0.0, -0.01]) if chest else np.zeros(3)
+        np.testing.assert_allclose(after.com, box.xyz + moved)
+        grown = box.size * ([1.1, 1.2, 1.3] if chest else 1.0)
+        across = np.array(
+            [grown[1] ** 2 + grown[2] ** 2, grown[0] ** 2 + grown[2] ** 2, grown[0] ** 2 + grown[1] ** 2]
+        )
+        np.testing.assert_allclose(after.inertia, np.diag(after.mass / 12 * across), atol=1e-12)

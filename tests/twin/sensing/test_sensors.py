@@ -180,7 +180,10 @@ def test_rubber_grows_with_the_robot_that_stands_on_it() -> None:
 
 
 def test_an_unknown_preset_lists_the_known() -> None:
-    with pytest.raises(PlantarError, match=r"unknown preset 'odd'.*ideal, sensors, realistic, harsh"):
+    with pytest.raises(
+        PlantarError,
+        match=r"^unknown preset 'odd' \(valid: ideal, sensors, realistic, harsh, plain_log, imperfect\)$",
+    ):
         preset_named("odd")
 
 
