@@ -93,6 +93,8 @@ KNEE, HIP, LEG, IMU = ("knee", "gain"), ("hip", "late"), ("all joints", "togethe
          "all joints 50 ms late (or the IMU early), or 'hip' 50 ms late"),
         ({IMU: (1.0, True)}, 1.4, "imu_soft", "the IMU tilts by 50 mrad for each m/s², as on a soft mount"),
         ({IMU: (1.0, True)}, 1.2, None, ""),
+        ({HIP: (2.4, True), KNEE: (2.0, True)}, 3.6, "joint_misread", "'knee' 0.952 times, or 'hip' 50 ms late"),
+        ({IMU: (0.05, True), KNEE: (1.2, True)}, 1.6, None, ""),  # the sure one is not better by half
         ({IMU: (0.05, True), KNEE: (1.0, True)}, 1.6, "joint_misread", "'knee' 0.952 times"),  # one is not sure
     ],
 )  # fmt: skip
