@@ -91,8 +91,8 @@ def test_legs_that_move_alike_are_not_told_exchanged(
     assert (
         said
         == [
-            "columns 'joint.left_leg_x.position', 'joint.right_leg_x.position', ...: the legs look exchanged: so the soles "
-            "on the floor move far less (valid: each leg's joints under their own names)"
+            "columns 'joint.left_leg_x.position', 'joint.right_leg_x.position', ...: the legs look exchanged: so the "
+            "soles on the floor move far less (valid: each leg's joints under their own names)"
         ]
         * told
     )
