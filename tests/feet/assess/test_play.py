@@ -40,7 +40,12 @@ def said(recordings: list[Recording]) -> list[Note]:
 def test_play_is_told_with_its_size(play: float) -> None:
     (note,) = said(swaying(PLAIN, play))
     assert (note.code, note.severity) == (CODE, "warning")
-    assert float(note.text.split("jumps by ")[1].split()[0]) == pytest.approx(1e3 * play, rel=0.25)
+    size, _, rest = note.text.removeprefix(f"{FOOT} pitch: the angle jumps by ").partition(" mrad ")
+    assert float(size) == pytest.approx(1e3 * play, rel=0.25)
+    assert rest == (
+        "where the torque changes its sign: play between an encoder and the foot, which makes the spring look softer "
+        "(valid: encoders on the foot's side of every gear; or keep the torque on one side of zero)"
+    )
 
 
 @pytest.mark.parametrize(
