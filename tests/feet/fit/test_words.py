@@ -99,8 +99,8 @@ def motions(
 def test_hardly_turned_stances_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the median stance, from end to end."""
     one = motions(monkeypatch, [0.0, 0.0123], [0.1, -0.1], [0.003, -0.0093])
-    memory = axis_of("elastoplastic", choice_of(score_of("elastoplastic", 0.7, chosen=True), score_of("kelvin_voigt", 1.0)),
-                     (400.0, 20.0, 3.0), offsets={"walk": 0.0})  # fmt: skip
+    of_memory = choice_of(score_of("elastoplastic", 0.7, chosen=True), score_of("kelvin_voigt", 1.0))
+    memory = axis_of("elastoplastic", of_memory, (400.0, 20.0, 3.0), offsets={"walk": 0.0})
     told = cautioned_if_hardly_turned(memory, [one]).choice
     assert told is not None
     assert told.caution == (
