@@ -25,7 +25,13 @@ def asked(robot: RobotModel, log: MotionLog) -> tuple[np.ndarray, np.ndarray, li
     """Orientation, rates, and codes of the notes."""
     notes: list[Note] = []
     assert robot.imu is not None
-    return *attitude(log, robot.imu, notes), [note.code for note in notes]
+    texts = {
+        "gyroscope_missing": "no angular velocity; rates come from differentiated orientation, damping is less sure",
+        "attitude_derived": "no IMU orientation; gravity's direction blended from gyroscope and accelerometer",
+    }
+    found = attitude(log, robot.imu, notes)
+    assert notes == [Note(note.code, "warning", f"{log.name}: {texts[note.code]}") for note in notes]
+    return *found, [note.code for note in notes]
 
 
 def test_what_is_recorded_is_taken_as_it_is(robot: RobotModel) -> None:
