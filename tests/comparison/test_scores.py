@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 from plantar.comparison import compare as room
 from plantar.comparison.compare import KindScore, compare, pooled
+from plantar.comparison.scenes import CONTACT, JOINTS
 from plantar.errors import MotionError
 from plantar.motions.plan import Plan
 
@@ -117,3 +119,15 @@ def test_all_motions_weigh_alike() -> None:
     ]
     assert pooled(rows, "rigid") == pytest.approx(0.005 / np.sqrt(2))
     assert pooled(rows, "other") is None
+
+
+def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:
+    stood = KindScore("a", CONTACT, 3e-3, 4e-3, 1.0, 20.0, fell=None)
+    fell = KindScore("b", CONTACT, None, None, None, 0.0, 0.4)
+    assert stood.chest == pytest.approx(5e-3)
+    assert pooled([stood, stood], CONTACT) == pytest.approx(5e-3)
+    assert pooled([stood, fell], CONTACT) is None
+    assert pooled([stood], JOINTS) is None
+    flat = replace(stood, tips=2.5, flat_chest=1e-3)
+    assert pooled([flat, flat], CONTACT, flat=True) == pytest.approx(1e-3)
+    assert pooled([flat, stood], CONTACT, flat=True) is None

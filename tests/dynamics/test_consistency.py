@@ -100,5 +100,7 @@ def test_a_solver_that_stalls_is_asked_again_with_shorter_steps(monkeypatch: pyt
     assert steps == sorted(set(steps), reverse=True)
     assert len(steps) == 2
     least = 0.0
-    with pytest.raises(DataError, match="did not converge"):
+    with pytest.raises(
+        DataError, match=r"^the physically consistent fit did not converge \(MaxIterations\)$"
+    ):
         consistent_fit(normal, prior, 1e-9, positive=())

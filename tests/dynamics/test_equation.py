@@ -170,10 +170,10 @@ def test_every_instruction_set_gives_the_same_rows() -> None:
 def test_wrong_shapes_and_values_that_are_not_finite_are_named() -> None:
     model = example_robots.model(example_robots.TALOS, floating=True)
     q, v, a = random_motion(model, 4, 7)
-    with pytest.raises(DataError, match=r"v: an array of shape \(4, 37\)"):
+    with pytest.raises(DataError, match=r"^v: an array of shape \(4, 37\) \(valid: \(4, 38\)\)$"):
         regressor(model, q, v[:, :-1], a)
     a[2, 5] = np.nan
-    with pytest.raises(DataError, match="a: sample 2, column 5 is nan"):
+    with pytest.raises(DataError, match=r"^a: sample 2, column 5 is nan \(valid: finite numbers\)$"):
         regressor(model, q, v, a)
 
 

@@ -27,6 +27,19 @@ def test_a_column_that_others_hold_adds_none() -> None:
     assert orthonormal(columns[:, :2], orthonormal(columns)).shape == (50, 0)
 
 
+@pytest.mark.parametrize("which", [[0, 0, 1], [2, 0, 1], [0, 2, 1, 0, 1], [0, 1, 3, 4]])
+def test_a_column_that_others_hold_takes_nothing_of_those_behind_it(which: list[int]) -> None:
+    """Column 2 is zero, 3 is made of the first two; lengths differ by far."""
+    x, y, z = np.random.default_rng(4).standard_normal((3, 50)) * np.array([[1e3], [1.0], [1e-3]])
+    columns = np.column_stack([x, y, 0 * x, 2 * x - y, z])[:, which]
+    beside = orthonormal(np.ones((50, 1)))
+    for own in (orthonormal(columns), orthonormal(columns, beside)):
+        assert own.shape == (50, len({0, 1, 4} & set(which)))
+        np.testing.assert_allclose(own.T @ own, np.eye(own.shape[1]), atol=1e-12)
+    left = without(np.hstack([beside, own]), columns)
+    np.testing.assert_allclose(np.linalg.norm(left, axis=0), 0.0, atol=1e-12 * 1e3)
+
+
 def test_more_columns_stand_beside_those_there() -> None:
     random = np.random.default_rng(2)
     first, more = orthonormal(random.standard_normal((80, 4))), random.standard_normal((80, 2))

@@ -27,7 +27,11 @@ def test_an_x_axis_that_points_to_the_other_foot_is_told(tmp_path: Path, degrees
     found = list(check_bush_axes(turned(tmp_path, degrees), record(sway())))
     assert len(found) == count
     assert all(one.code == "bush_axes" and not one.fatal for one in found)
-    assert all("feet.left.bush.rpy" in one.text for one in found[:1])
+    assert [one.text for one in found] == [
+        f"robot file, feet.{foot}.bush.rpy: its x axis points to the other foot: pitch and roll would be exchanged "
+        "(valid: x to the toes, y to the left, z up)"
+        for foot in ("left", "right")[:count]
+    ]
 
 
 @pytest.mark.parametrize("names", [{}, {"left": "right", "right": "left"}])
@@ -35,7 +39,12 @@ def test_a_foot_that_is_named_after_the_other_side_is_told(tmp_path: Path, names
     feet = robot_entry()["feet"]
     assert isinstance(feet, dict)
     robot = make_robot(tmp_path, feet={names.get(name, name): foot for name, foot in feet.items()})
-    assert [one.code for one in check_bush_axes(robot, record(sway()))] == ["feet_exchanged"] * bool(names)
+    text = (
+        "robot file, feet: the foot 'left' stands to the right of the foot 'right' (valid: exchange the two names; or, "
+        "where x of their bushes points to the heels, turn it to the toes)"
+    )
+    found = [(one.code, one.text) for one in check_bush_axes(robot, record(sway()))]
+    assert found == [("feet_exchanged", text)] * bool(names)
 
 
 @pytest.mark.parametrize("pitch", [0.0, 1.2])

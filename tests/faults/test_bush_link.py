@@ -40,7 +40,11 @@ def test_a_bush_above_a_moving_joint_is_told(above: RobotModel, log: MotionLog) 
     (found,) = check_bush_link(above, log)
     assert found.code == "bush_link"
     assert not found.fatal
-    assert "feet.left.bush.link" in found.text
+    moved = float(np.ptp(log.column("joint.left_ankle_roll.position")))
+    assert found.text == (
+        "robot file, feet.left.bush.link: 'left_ankle_pitch' has the joint 'left_ankle_roll' below it: it moves by "
+        f"{moved:.2g} rad and turns the sole unseen (valid: the last link of the leg)"
+    )
     assert found in check_log(above, log)
     result = identify_feet(above, [log])
     left = [row for row in result.parameters if row.foot == "left" and row.axis != "z"]

@@ -139,7 +139,10 @@ def resting(start: int, seconds: float, missed: int) -> MotionLog:
 def test_a_simulated_robot_at_rest_has_no_dead_channel(robot: RobotModel) -> None:
     (found,) = check_channels(robot, resting(0, 2.0, 0))
     assert (found.code, found.severity) == ("at_rest", "info")
-    assert found.text.startswith("t = 0 to 1.99 s: nothing changes")
+    share = f"{100 * 200 / len(resting(0, 2.0, 0)):.0f} %"
+    assert found.text == (
+        f"t = 0 to 1.99 s: nothing changes, as of a simulated robot at rest; {share} of the log, left out"
+    )
     log = resting(0, 2.0, 0)
     name = "wrench.left.force.x"
     both = log.with_columns(
@@ -160,7 +163,10 @@ def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
     none = {f"wrench.left.{part}": np.zeros(len(log)) for part in ("force.x", "force.y", "torque.z")}
     cells = log.with_columns(none)
     found = [finding for finding in check_log(robot, cells) if "wrench.left" in finding.text]
-    assert [finding.code for finding in found] == ["vertical_only"]
+    assert [(finding.code, finding.text) for finding in found] == [
+        ("vertical_only", "columns 'wrench.left.*': vertical force cells, no horizontal force: the bush's torque is "
+         "off by that force times the bush's height over the cells")
+    ]  # fmt: skip
     broken = cells.with_columns({"wrench.left.torque.z": log.column("wrench.left.torque.z")})
     assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_force"]
 
@@ -193,8 +199,11 @@ def test_frames_that_a_bus_loses_are_told_of_their_sensor(
     found = [finding for finding in check_channels(robot, log) if finding.code == "lost_frames"]
     assert len(found) == told
     if told:
-        assert sensor in found[0].text
-        assert f"up to {10 * length} ms at a time, {100 * length / every:.0f} % of the log" in found[0].text
+        assert found[0].text == (
+            f"columns '{sensor}*': repeat their last values again and again, up to {10 * length} ms at a time, "
+            f"{100 * length / every:.0f} % of the log; does a bus lose frames? Delays and damping are not sure "
+            "(valid: leave such cells empty)"
+        )
         assert not found[0].fatal
         assert found[0].severity == "warning"
 

@@ -98,7 +98,8 @@ def test_a_force_that_leans(
 @pytest.mark.parametrize(
     ("misfit", "code", "fatal", "text"),
     [(0.119, None, False, ""),
-     (0.121, "balance", False, "only to 12.1 cm about the URDF's centre of mass (valid: below 2 cm;"),
+     (0.121, "balance", False, "columns 'wrench.*': balance gravity only to 12.1 cm about the URDF's centre of mass "
+      "(valid: below 2 cm; check the encoders' zeros, where the wrenches are measured, and the masses)"),
      (1.49, "balance", False, "only to 149.0 cm"), (1.51, "balance", True, "only to 1.51 m about the centre of mass")],
 )  # fmt: skip
 def test_a_misfit_that_nothing_explains(
@@ -173,6 +174,10 @@ def test_a_joint_reversed_is_certain_where_hardly_a_tenth_is_left(
     found = said(monkeypatch, Stub(misfit, lean), others, joints)
     assert found is not None
     assert (found.code, found.fatal) == ("sign", fatal)
+    motors = (
+        "valid: the signs of URDF and robot file, and the URDF's joints, not the motors of a parallel linkage"
+    )
+    assert not joints or found.text.endswith(f" cm ({motors})")
 
 
 @pytest.mark.parametrize(
@@ -284,7 +289,11 @@ def test_what_moves_is_measured_by_the_soles(
 def test_joints_that_are_exchanged(monkeypatch: pytest.MonkeyPatch, misfit: float, told: bool) -> None:
     found = said(monkeypatch, Stub(misfit), pair="'joint.a.position', 'joint.b.position'")
     assert (found is not None) == told
-    assert not found or (found.code, found.fatal) == ("joint_names", True)
+    text = (
+        "'joint.a.position', 'joint.b.position': exchanged, the wrenches balance gravity far better (check the joints' "
+        "names, order and unit)"
+    )
+    assert not found or (found.code, found.text, found.fatal) == ("joint_names", text, True)
 
 
 @pytest.mark.parametrize(

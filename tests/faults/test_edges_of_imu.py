@@ -58,6 +58,9 @@ def test_an_accelerometer_s_norm_is_gravity_s(norm: float, found: list[tuple[str
     assert told(findings) == found
     alone = [(code, fatal or code == "dead_channel") for code, fatal in found]
     assert told(imu(acceleration=acceleration)) == alone
+    valid = "(valid: m/s², about 9.81 at rest)"
+    dead = f"columns 'imu.chest.linear_acceleration.*': hold no value; not used {valid}"
+    assert all(one.text == dead for one in findings if one.code == "dead_channel")
     assert not norm > 0 or all(f"{norm:.3g}" in one.text for one in findings)
     assert all(("without gravity" in one.text) == (norm < 2.0) for one in findings if one.code == UNIT)
 
@@ -78,9 +81,14 @@ def test_an_attitude_and_its_accelerometer_have_one_up(degrees: float, code: str
     lean = np.array([np.cos(np.radians(degrees) / 2), 0.0, np.sin(np.radians(degrees) / 2), 0.0])
     found = imu(orientation=lean, acceleration=up)
     assert [one.code for one in found] == [code] * (code is not None)
-    assert (
-        code != "attitude_mismatch" or f"differs from the accelerometer's by {degrees} deg" in found[0].text
-    )
+    said = {
+        "attitude_mismatch": f"columns 'imu.chest.orientation.*': up differs from the accelerometer's by {degrees} deg "
+        "(valid: w x y z, body to world, z up)",
+        "sign": "columns 'imu.chest.linear_acceleration.*': points down at rest, reversed, or the orientation's world "
+        "has z down; or its quaternion is no w x y z: read as x y z w it agrees (valid: proper acceleration, +9.81 "
+        "m/s² upwards at rest; orientation body to world, z up)",
+    }
+    assert not code or found[0].text == said[code]
     nine = np.tile(lean, (9, 1))
     assert imu(orientation=nine, acceleration=np.tile(up, (9, 1))) == [], (
         "of fewer than ten samples nothing is said"
@@ -94,4 +102,6 @@ def test_a_rate_that_never_changes_is_dead_where_the_orientation_does(size: floa
     orientation = np.column_stack([np.sqrt(1 - x**2), x, np.zeros((100, 2))])
     found = imu(orientation=orientation, rates=np.zeros(3))
     assert told(found) == [("dead_channel", True)] * (3 * dead)
-    assert told(imu(orientation=np.full(4, np.nan), rates=np.full(3, np.nan))) == [("dead_channel", True)] * 4
+    empty = imu(orientation=np.full(4, np.nan), rates=np.full(3, np.nan))
+    assert told(empty) == [("dead_channel", True)] * 4
+    assert empty[3].text == "columns 'imu.chest.orientation.*': hold no value (valid: leave the columns out)"

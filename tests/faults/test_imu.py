@@ -88,11 +88,24 @@ FAULTS: dict[str, tuple[Callable[[MotionLog], MotionLog], str, bool]] = {
 }
 
 
+SAID = {
+    "a gyroscope of another scale": "columns 'imu.chest.angular_velocity.*': 4 times the orientation's rate (valid: "
+    "about 1)",
+    "a gyroscope about other axes": "columns 'imu.chest.angular_velocity.*': turns about axes 8 deg beside the "
+    "orientation's (valid: both in the IMU's own frame)",
+    "a gyroscope in the world's axes": "columns 'imu.chest.angular_velocity.*': turns about the world's axes (valid: "
+    "the IMU's own)",
+    "an accelerometer that reads one value": "columns 'imu.chest.linear_acceleration.*': never change; is the sensor "
+    "dead? Not used (valid: m/s², about 9.81 at rest)",
+}
+
+
 @pytest.mark.parametrize("name", FAULTS)
 def test_each_fault_is_named_and_refused_where_nothing_could_be_fitted(log: MotionLog, name: str) -> None:
     spoil, code, fatal = FAULTS[name]
     found = list(check_imu("chest", spoil(log)))
     assert [(finding.code, finding.fatal) for finding in found] == [(code, fatal)], found
+    assert found[0].text == SAID.get(name, found[0].text)
 
 
 def test_a_sound_imu_is_left_alone_whatever_it_lacks(log: MotionLog) -> None:
@@ -146,7 +159,11 @@ def test_a_gyroscope_in_the_world_is_told_of_where_a_reversed_axis_looks_the_sam
     turned |= dict(zip(ACCELEROMETER, accelerations.T, strict=True))
     (finding,) = check_imu("chest", log.with_columns(turned))
     assert finding.code == "sign"
-    assert "about the world's axes" in finding.text
+    assert finding.text == (
+        "column 'imu.chest.angular_velocity.x' and 'imu.chest.angular_velocity.y': turns against the orientation, "
+        "which the accelerometer's up does not contradict, or all of the gyroscope turns about the world's axes "
+        "(valid: right-handed about the IMU's axes)"
+    )
 
 
 @pytest.mark.parametrize(("degrees", "told"), [(22.0, False), (28.0, True)])

@@ -61,10 +61,13 @@ def test_no_sign_is_advised_where_sensors_were_zeroed_under_load(robot: RobotMod
     """Zeroed while both feet carried half, then most of the weight on one: one foot reads negative with either sign."""
     loads = {"left": sign * (LEFT - WEIGHT / 2), "right": sign * (WEIGHT / 2 - LEFT)}
     (found,) = check_load_signs(signed(robot, sign), {name: 1.5 * load for name, load in loads.items()})
-    assert found.code == "zeroed_under_load"
-    assert found.fatal
-    assert "contact: always" in found.text
-    assert "set 'sign" not in found.text
+    assert (found.code, found.fatal) == ("zeroed_under_load", True)
+    foot = "right" if sign == 1 else "left"
+    assert found.text == (
+        f"column 'wrench.{foot}.force.z', value {-1.5 * (np.median(LEFT) - WEIGHT / 2):.4g}: pulls the standing foot "
+        "down; the feet exchange load as they should, so the sensors were zeroed under load (valid: zeroed in the air, "
+        "or 'contact: always' for feet that stand throughout)"
+    )
 
 
 def test_samples_that_one_foot_lacks_say_nothing_of_the_exchange(robot: RobotModel) -> None:
@@ -83,7 +86,14 @@ def test_a_foot_in_the_air_that_pulls_has_a_zero_and_no_reversed_sign(
     left = np.full_like(TIME, -0.3 * WEIGHT)
     (found,) = check_load_signs(robot, {"left": left, "right": np.full_like(TIME, right * WEIGHT)})
     assert found.code == ("zeroed_under_load" if right == 1.0 else "sign")
-    assert ("its zero is off" in found.text) == (right == 1.0)
+    said = (
+        "reads this while the other foot carries the whole weight, so its zero is off (valid: 0; zero the sensor in "
+        "the air)"
+    )
+    if right < 1.0:
+        said = "pulls the standing foot down (valid: > 0; set 'sign: -1' in feet.left.wrench, or turn its rpy if it "
+        said += "sits upside down)"
+    assert found.text == f"column 'wrench.left.force.z', value {-0.3 * WEIGHT:.4g}: {said}"
 
 
 def test_feet_that_stand_throughout_are_not_asked(robot: RobotModel) -> None:

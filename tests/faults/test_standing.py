@@ -116,7 +116,10 @@ def test_a_joint_that_is_not_recorded_is_named_before_what_it_spoils(sway: Motio
     kept = {name: sway.column(name) for name in sway.columns if "RLEG_JOINT3" not in name}
     first = next(one for one in found(MotionLog("lame", sway.time, kept)) if one.fatal)
     assert first.code == "joint_names"
-    assert "RLEG_JOINT3 not recorded" in first.text
+    assert first.text == (
+        "columns 'joint.*.position': RLEG_JOINT3 not recorded, and with them at 0 the feet's wrenches do not balance "
+        "gravity (valid: a position of every joint between IMU and feet)"
+    )
 
 
 def test_a_few_absurd_samples_reverse_nothing(tilt: MotionLog) -> None:

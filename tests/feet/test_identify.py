@@ -121,7 +121,12 @@ def test_the_imus_yaw_never_enters(robot: RobotModel, logs: list[MotionLog], res
 
 
 def test_a_wrong_sign_is_refused(tmp_path: Path, logs: list[MotionLog]) -> None:
-    with pytest.raises(DataError, match=r"sign: -1"):
+    with pytest.raises(
+        DataError,
+        match=r"^sway: column 'wrench\.left\.force\.z', value -299\.2: pulls the standing foot down "
+        r"\(valid: > 0; set 'sign: -1' in feet\.left\.wrench, or turn its rpy if it sits upside "
+        r"down\)$",
+    ):
         identify_feet(make_robot(tmp_path), [record(sway(), Mounting(sign=-1))])
 
 

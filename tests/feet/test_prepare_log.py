@@ -50,7 +50,13 @@ def test_what_a_sensor_reads_in_the_air_is_taken_off_and_told(robot: RobotModel)
     assert note.text.startswith("steps: left foot: in the air its force sensor reads 4, -3, 20 N (4 swings")
 
 
-@pytest.mark.parametrize(("count", "told"), [(0, "names no feet"), (4, "names 4 feet")])
+@pytest.mark.parametrize(
+    ("count", "told"),
+    [
+        (0, r"robot\.yaml: names no feet \(valid: feet: \{left: \.\.\., right: \.\.\.\}\)$"),
+        (4, r"robot\.yaml: names 4 feet \(valid: two: the feet of a biped\)$"),
+    ],
+)
 def test_feet_that_are_no_biped_s_are_refused(robot: RobotModel, count: int, told: str) -> None:
     feet = {str(place): robot.feet["left"] for place in range(count)}
     other = replace(robot, feet=feet)
@@ -74,7 +80,11 @@ def test_without_an_orientation_an_accelerometer_has_to_show_gravity(robot: Robo
     small = {name: 0.05 * log.column(name) for name in imu_columns("chest", "linear_acceleration")}
     odd = log.with_columns(small)
     assert not checked(robot, odd).has(*small)
-    with pytest.raises(DataError, match="as of an acceleration without gravity"):
+    with pytest.raises(
+        DataError,
+        match=r"^sway: columns 'imu\.chest\.linear_acceleration\.\*': its usual norm is 0\.49, as of an "
+        r"acceleration without gravity; not used \(valid: m/s², about 9\.81 at rest\)$",
+    ):
         checked(robot, odd.without(imu_columns("chest", "orientation")))
 
 

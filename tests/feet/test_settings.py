@@ -14,10 +14,22 @@ from plantar.models import MODELS
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
-        ({"model": "x"}, r"value 'x': model is not a choice \(valid: auto, kelvin_voigt, "),
-        ({"model": None}, "model is not a choice"),
+        (
+            {"model": "x"},
+            r"^value 'x': model is not a choice \(valid: auto, kelvin_voigt, hardening, coulomb, "
+            r"elastoplastic, hardening_elastoplastic, iwan, bouc_wen, standard_linear_solid, "
+            r"coupled\)$",
+        ),
+        (
+            {"model": None},
+            r"^model is not a choice \(valid: auto, kelvin_voigt, hardening, coulomb, elastoplastic, "
+            r"hardening_elastoplastic, iwan, bouc_wen, standard_linear_solid, coupled\)$",
+        ),
         ({"offset": "shard"}, r"value 'shard': offset is not a choice \(valid: per-motion, shared\)"),
-        ({"offset": ["shared"]}, "offset is not a choice"),
+        (
+            {"offset": ["shared"]},
+            r"^value \['shared'\]: offset is not a choice \(valid: per-motion, shared\)$",
+        ),
         (
             {"cutoff": -1.0},
             r"value -1\.0: cutoff is not valid \(valid: at least 0\.1 Hz, or None: found from the data\)",
@@ -27,10 +39,14 @@ from plantar.models import MODELS
         ({"cutoff": float("inf")}, "cutoff"),
         ({"cutoff": "5"}, "cutoff"),
         ({"cutoff": True}, "cutoff"),
-        ({"edge_margin": -0.001}, "edge_margin is not valid .valid: at least 0 m"),
+        ({"edge_margin": -0.001}, r"^value -0\.001: edge_margin is not valid \(valid: at least 0 m\)$"),
         ({"window": 0.0}, "window is not valid .*None: found from the data"),
         ({"window": 4.0}, "window"),
-        ({"wrench_delay": 5.0}, r"wrench_delay is not valid \(valid: -1 to 1 s, or None: estimated"),
+        (
+            {"wrench_delay": 5.0},
+            r"^value 5\.0: wrench_delay is not valid \(valid: -1 to 1 s, or None: estimated from the "
+            r"data\)$",
+        ),
         ({"wrench_delay": "late"}, "wrench_delay"),
     ],
 )

@@ -40,13 +40,17 @@ def test_another_robots_result_is_refused(robot: RobotModel, tmp_path: Path) -> 
     feet = robot_entry()["feet"]
     assert isinstance(feet, dict)
     other = make_robot(tmp_path, feet={"right": feet["right"]})
-    with pytest.raises(DataError, match=r"foot 'left' \(valid: right\)"):
+    with pytest.raises(DataError, match=r"^the result is about a foot 'left' \(valid: right\)$"):
         validate_feet(found, other, [log])
 
 
 def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
     found = identify_feet(robot, [record(sway("a", 1, duration=8.0))], settings=LINEAR)
-    with pytest.raises(DataError, match="no log has samples"):
+    with pytest.raises(
+        DataError,
+        match=r"^no log has samples of a standing foot that could be scored \(valid: more than 1\.3 s "
+        r"of stance\)$",
+    ):
         validate_feet(found, robot, [record(sway("b", 2, duration=1.2))])
 
 

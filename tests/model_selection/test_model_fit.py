@@ -248,9 +248,17 @@ def test_reconstruction_is_the_fit_plus_its_residual() -> None:
 def test_nothing_to_fit_is_one_line() -> None:
     data_set = campaign(0, Rubber())[0]
     unused = replace(data_set, used=np.zeros_like(data_set.used))
-    with pytest.raises(DataError, match="no recording has a sample"):
+    with pytest.raises(
+        DataError,
+        match=r"^no recording has a sample that this fit can use \(valid: at least one standing "
+        r"second\)$",
+    ):
         fit_model(KelvinVoigt(), [unused], shared_offset=False)
-    with pytest.raises(DataError, match="no recording has a sample"):
+    with pytest.raises(
+        DataError,
+        match=r"^no recording has a sample that this fit can use \(valid: at least one standing "
+        r"second\)$",
+    ):
         choose_model([unused], shared_offset=False, before=None)
 
 

@@ -244,7 +244,7 @@ def test_a_loaded_element_starts_where_its_load_put_it() -> None:
 def test_the_coupled_law_asks_for_the_other_axis() -> None:
     alone = BushMotion(path(), rate_of(path()), PERIOD)
     assert not MODELS["coupled"].applies([alone])
-    with pytest.raises(DataError, match="other axis"):
+    with pytest.raises(DataError, match=r"^the coupled model needs the deflection of the foot's other axis$"):
         MODELS["coupled"].columns(alone)
 
 

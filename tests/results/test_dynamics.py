@@ -53,16 +53,27 @@ def test_a_result_comes_back_from_its_file_to_the_byte(schema: str, tmp_path: Pa
 def test_other_results_and_broken_rows_are_one_line(tmp_path: Path) -> None:
     content = made(INERTIA_SCHEMA).to_dict()
     for change, expected in (
-        ({"schema": "plantar.feet/1"}, "another kind of result"),
-        ({"rank": "many"}, "'rank'"),
-        ({"base_parameters": [{"expression": "m"}]}, "'base_parameters.0.value'"),
+        (
+            {"schema": "plantar.feet/1"},
+            r"result\.json, value 'plantar\.feet/1': is another kind of result \(valid: "
+            r"plantar\.inertia/1, plantar\.joints/1\)$",
+        ),
+        (
+            {"rank": "many"},
+            r"result\.json, column 'rank': Input should be a valid integer, unable to parse string as "
+            r"an integer$",
+        ),
+        (
+            {"base_parameters": [{"expression": "m"}]},
+            r"result\.json, column 'base_parameters\.0\.value': Field required$",
+        ),
     ):
         (tmp_path / "result.json").write_text(json.dumps(content | change))
         with pytest.raises(PlantarError, match=expected) as caught:
             DynamicsResult.load(tmp_path)
         assert "\n" not in str(caught.value)
     (tmp_path / "result.json").write_text(json.dumps(content))
-    with pytest.raises(PlantarError, match=r"identified\.urdf"):
+    with pytest.raises(PlantarError, match=r"identified\.urdf: cannot be read: No such file or directory$"):
         DynamicsResult.load(tmp_path)
 
 

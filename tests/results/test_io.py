@@ -39,5 +39,5 @@ def test_files_that_are_no_results(tmp_path: Path, text: str, expected: str) -> 
 
 
 def test_a_missing_result(tmp_path: Path) -> None:
-    with pytest.raises(PlantarError, match="No such file"):
+    with pytest.raises(PlantarError, match=r"result\.json: cannot be read: No such file or directory$"):
         read_result(tmp_path / "result.json")

@@ -43,10 +43,16 @@ def test_a_folder_a_string_and_a_table_give_the_same_tracks(tmp_path: Path) -> N
 
 
 def test_a_folder_without_residuals_and_a_broken_file_are_one_line(tmp_path: Path) -> None:
-    with pytest.raises(PlantarError, match=r"holds no residuals .*residuals\.csv\.gz"):
+    with pytest.raises(
+        PlantarError,
+        match=r": holds no residuals \(valid: residuals\.parquet, "
+        r"residuals\.csv, residuals\.csv\.gz\)$",
+    ):
         read_residuals(tmp_path)
     (tmp_path / "residuals.csv").write_text("motion,foot,time\na,left,0.1\n")
-    with pytest.raises(PlantarError, match=r"residuals\.csv, column 'used': is missing"):
+    with pytest.raises(
+        PlantarError, match=r"residuals\.csv, column 'used': is missing \(valid: motion, foot, time, used\)$"
+    ):
         read_residuals(tmp_path)
 
 

@@ -117,7 +117,11 @@ def test_a_robot_without_weight_is_refused(tmp_path: Path) -> None:
     path = write_robot(tmp_path)
     urdf = tmp_path / "biped.urdf"
     urdf.write_text(urdf.read_text().replace("<inertial>", "<!--").replace("</inertial>", "-->"))
-    with pytest.raises(RobotError, match="its links weigh nothing"):
+    with pytest.raises(
+        RobotError,
+        match=r"robot\.yaml: urdf: its links weigh nothing \(valid: links with an <inertial>: contact "
+        r"and delays follow from the robot's weight\)$",
+    ):
         load_robot(path)
 
 

@@ -11,6 +11,7 @@ from feet_trials import codes
 from plantar.conventions import Array
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.signals.heading import with_one_heading
 
@@ -49,7 +50,8 @@ def test_a_heading_is_as_if_it_had_never_been_set_anew(
     assert alike.min() > 1 - 1e-5  # but for what it turns within a sample
     assert [note.code for note in found.notes][len(log.notes) :] == ["heading_jumps"]
     times = [f"{at + 0.01:.4g} s" for at, _ in jumped]
-    assert f"at t = {', '.join(times)}: taken out" in found.notes[-1].text
+    text = f"{log.name}: the heading of imu 'chest' jumps, and nothing turned, at t = {', '.join(times)}: taken out"
+    assert found.notes[-1] == Note("heading_jumps", "info", text)
 
 
 def test_what_is_no_jump_of_the_heading_alone_stays(log: MotionLog) -> None:

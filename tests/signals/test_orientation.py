@@ -25,7 +25,13 @@ def asked(robot: RobotModel, log: MotionLog) -> tuple[np.ndarray, np.ndarray, li
     """Orientation, rates, and codes of the notes."""
     notes: list[Note] = []
     assert robot.imu is not None
-    return *attitude(log, robot.imu, notes), [note.code for note in notes]
+    texts = {
+        "gyroscope_missing": "no angular velocity; rates come from differentiated orientation, damping is less sure",
+        "attitude_derived": "no IMU orientation; gravity's direction blended from gyroscope and accelerometer",
+    }
+    found = attitude(log, robot.imu, notes)
+    assert notes == [Note(note.code, "warning", f"{log.name}: {texts[note.code]}") for note in notes]
+    return *found, [note.code for note in notes]
 
 
 def test_what_is_recorded_is_taken_as_it_is(robot: RobotModel) -> None:
@@ -65,7 +71,7 @@ def test_an_orientation_is_derived_and_missing_where_the_sensors_are(robot: Robo
 def test_an_imu_without_one_whole_sample_is_refused(robot: RobotModel) -> None:
     log = record(sway())
     nothing = {"imu.chest.angular_velocity.x": np.full(len(log), np.nan)}
-    with pytest.raises(DataError, match="imu 'chest' has no sample with all values"):
+    with pytest.raises(DataError, match=r"^sway: imu 'chest' has no sample with all values$"):
         asked(robot, without(log.with_columns(nothing), "orientation"))
 
 
@@ -73,7 +79,10 @@ def test_an_imu_of_another_name_is_told_by_the_names_that_the_log_has(robot: Rob
     log = record(sway())
     columns = {name.replace("imu.chest", "imu.my.base"): values for name, values in log.columns.items()}
     with pytest.raises(
-        LogError, match=r"'imu\.chest\.\*' are missing.*imu\.chest\.orientation\.w.*: my\.base\)"
+        LogError,
+        match=r"^other: columns 'imu\.chest\.\*' are missing \(valid: imu\.chest\.orientation\.w, \.x, "
+        r"\.y, \.z, or angular_velocity and linear_acceleration; in the robot file imu\.name as "
+        r"the log has it: my\.base\)$",
     ):
         asked(robot, MotionLog("other", log.time, columns))
 

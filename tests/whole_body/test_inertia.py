@@ -17,7 +17,6 @@ from plantar.dynamics import Contact, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
 from plantar.dynamics.equation import Equation
-from plantar.errors import DataError, RobotError
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
@@ -266,26 +265,6 @@ def test_gaps_and_nan_are_left_out_with_a_note(robot: RobotModel, logs: list[Mot
     found = identify_inertia(robot, [logs[0].with_columns({"imu.trunk.linear_acceleration.z": column})])
     assert "left_out" in {note.code for note in found.notes}
     assert found.mass == pytest.approx(identify_inertia(robot, logs[:1]).mass, rel=0.01)
-
-
-def test_what_cannot_serve_is_refused_in_one_line(robot: RobotModel, logs: list[MotionLog]) -> None:
-    with pytest.raises(RobotError, match="fixed"):
-        identify_inertia(replace(robot, base="fixed"), logs[:1])
-    with pytest.raises(RobotError, match="feet"):
-        identify_inertia(replace(robot, feet={}), logs[:1])
-    with pytest.raises(DataError, match="two logs are called 'one'"):
-        identify_inertia(robot, [logs[0], logs[0]])
-    with pytest.raises(DataError, match="samples that can be used"):
-        identify_inertia(robot, [logs[0].select(slice(0, 80))])
-    columns = {
-        name: values for name, values in logs[0].columns.items() if "linear_acceleration.z" not in name
-    }
-    lifted = {name: 0 * values if name.startswith("wrench.") else values for name, values in columns.items()}
-    with pytest.raises(DataError, match="how the root link moves"):
-        identify_inertia(robot, [MotionLog("one", logs[0].time, lifted)])
-    air = {name: 0 * values for name, values in logs[0].columns.items() if name.startswith("wrench.")}
-    with pytest.raises(DataError, match="carry nothing"):
-        identify_inertia(robot, [logs[0].with_columns(air)])
 
 
 def test_consistency_bounds_what_least_squares_would_make_negative() -> None:

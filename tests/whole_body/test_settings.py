@@ -12,7 +12,10 @@ from plantar.whole_body.settings import DynamicsSettings
 
 @pytest.mark.parametrize(
     ("given", "expected"),
-    [({"cutoff": -3.0}, "cutoff .*at least 0.1 Hz"), ({"as_recorded": "yes"}, "as_recorded .*True, False")],
+    [
+        ({"cutoff": -3.0}, r"^value -3\.0: cutoff is not valid \(valid: at least 0\.1 Hz\)$"),
+        ({"as_recorded": "yes"}, r"^value 'yes': as_recorded is not valid \(valid: True, False\)$"),
+    ],
 )
 def test_a_wrong_setting_is_one_line(given: dict[str, Any], expected: str) -> None:
     with pytest.raises(SettingsError, match=expected):

@@ -18,12 +18,15 @@ WORTH = 3  # times as many columns as terms: fewer are taken off as they are
 
 
 def orthonormal(columns: Array, beside: Array | None = None) -> Array:
-    """A basis (n, r) of what columns (n, m) span beside orthonormal ones (n, p); column by column, without dependent
-    ones."""
+    """A basis (n, r) of what columns (n, m) span beside orthonormal ones (n, p); without dependent ones."""
     left = columns if beside is None else without(beside, without(beside, columns))
     basis, triangle = np.linalg.qr(left)
-    told = np.abs(np.diag(triangle)) > RANK_TOLERANCE * np.linalg.norm(columns, axis=0)[: len(triangle)]
-    return basis if told.all() else np.ascontiguousarray(basis[:, told])
+    length = np.linalg.norm(columns, axis=0)
+    if (np.abs(np.diag(triangle)) > RANK_TOLERANCE * length[: len(triangle)]).all():
+        return basis
+    # A dependent column's direction is rounding's, and would take a part of what comes behind it.
+    basis, singular, _ = np.linalg.svd(left / np.where(length > 0, length, 1.0), full_matrices=False)
+    return np.ascontiguousarray(basis[:, singular > RANK_TOLERANCE])
 
 
 def without(basis: Array, rows: Array) -> Array:

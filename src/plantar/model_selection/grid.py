@@ -236,8 +236,8 @@ def _best_states(own: Array, rest: Array, values: Array) -> Numbers:
     vector = np.column_stack([values, np.zeros(len(values)), -np.ones(len(values))])
     both = (vector[:, :, None] * vector[:, None, :]).reshape(len(vector), -1)
     missed = np.einsum("rgcx,gx->rgc", own.reshape(*own.shape[:3], -1), both)
-    missed += np.einsum("rgx,gx->rg", rest.reshape(*rest.shape[:2], -1), both)[:, :, None]
     sums = np.einsum("rgci,gi->rgc", own[..., -2, :], vector)
     sums += np.einsum("rgi,gi->rg", rest[..., -2, :], vector)[:, :, None]
+    # Beside what the rest of the data set misses, which is alike for all states.
     squares = missed - sums**2 / np.maximum(rest[:, :, None, -2, -2] + own[..., -2, -2], 1e-300)
     return np.asarray(np.argmin(squares, axis=2))

@@ -59,7 +59,7 @@ def write_inertias(root: ET.Element, model: pin.Model, bodies: Mapping[str, Arra
         mass, centre, inertia = _about_centre(parameters, about)
         links[carrier.name].insert(0, _inertial(mass, centre, inertia))
         principal = np.linalg.eigvalsh(inertia)
-        if principal[0] < 0 or principal[2] > principal[0] + principal[1] + ROUNDING:
+        if principal[2] > principal[0] + principal[1] + ROUNDING:  # as also where one is negative
             text = f"'{carrier.name}': no body can have the identified inertia; simulators may refuse it"
             notes.append(Note("export_inertia", "warning", text))
     if emptied:

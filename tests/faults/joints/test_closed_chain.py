@@ -87,9 +87,14 @@ def test_legs_that_move_alike_are_not_told_exchanged(
         "plantar.faults.joints.closed_chain._soles",
         lambda states: next(reads) * np.sin(np.arange(len(states["left"].force_z)))[:, None],
     )
+    said = [one.text for one in check_closed_chain(robot, log.with_columns(still | moving)) if one.fatal]
     assert (
-        bool([one for one in check_closed_chain(robot, log.with_columns(still | moving)) if one.fatal])
-        == told
+        said
+        == [
+            "columns 'joint.left_leg_x.position', 'joint.right_leg_x.position', ...: the legs look exchanged: so the "
+            "soles on the floor move far less (valid: each leg's joints under their own names)"
+        ]
+        * told
     )
 
 
@@ -128,7 +133,10 @@ def test_a_sole_that_slides_may_be_a_stuck_encoder(robot: RobotModel) -> None:
     slide = log.column("joint.right_leg_x.position") + 0.01 * np.sin(1.1 * log.time)
     findings = list(check_closed_chain(robot, log.with_columns({"joint.right_leg_x.position": slide})))
     assert {(one.code, one.fatal) for one in findings} == {("stuck_channel", False)}
-    assert all("did a sole slide" in one.text for one in findings)
+    assert all(
+        one.text.endswith("; is the encoder stuck, or did a sole slide? (valid: leave such cells empty)")
+        for one in findings
+    )
 
 
 @pytest.mark.parametrize("kind", ["joint", "wrench"])
@@ -148,7 +156,11 @@ def test_a_robot_that_stands_on_the_foot_in_the_air_has_its_sides_exchanged(kind
     }
     (found,) = check_closed_chain(twin, walk.with_columns(exchanged))
     assert (found.code, found.fatal) == ("joint_names", True)
-    assert "cm higher than the one in the air" in found.text
+    assert found.text.partition(" cm ")[2] == (
+        "higher than the one in the air; the legs' joints look exchanged, or the force sensors "
+        "(valid: each leg's joints and sensor under their own names)"
+    )
+    assert found.text.startswith("columns 'joint.*.position': the foot that carries the robot alone is ")
     # Neither a second or two on one foot says so, nor a leg that stands at its neutral posture for lack of a column.
     log = walk.with_columns(exchanged)
     assert list(check_closed_chain(twin, log.select(log.time < log.time[0] + 5.2))) == []

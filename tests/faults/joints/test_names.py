@@ -28,7 +28,13 @@ def log() -> MotionLog:
 
 def test_a_log_of_other_joints_is_an_error_that_proposes_the_prefix(tmp_path: Path, log: MotionLog) -> None:
     robot, other = make_robot(tmp_path), renamed(log, prefix="biped/")
-    with pytest.raises(DataError, match=r"joint_names: \{prefix: biped/\}") as caught:
+    with pytest.raises(
+        DataError,
+        match=r"^sway: columns 'joint\.\*\.position': do not hold any joint of the URDF "
+        r"\(left_ankle_pitch, left_ankle_roll, left_leg_x and 8 more\); the log's "
+        r"biped/left_ankle_pitch, biped/left_ankle_roll, biped/left_leg_x and 8 more look like "
+        r"them \(valid: 'joint_names: \{prefix: biped/\}' in the robot file\)$",
+    ) as caught:
         identify_feet(robot, [other])
     assert "\n" not in str(caught.value)
     assert any(
@@ -56,7 +62,12 @@ def test_a_log_that_only_numbers_the_joints_is_an_error_that_names_the_order(
     numbers = {joint: str(place) for place, joint in enumerate(robot.joint_names)}
     (found,) = check_joint_names(robot, renamed(log, numbers))
     assert found.fatal
-    assert "if the log has the URDF's order" in found.text
+    assert found.text == (
+        "columns 'joint.*.position': do not hold any joint of the URDF (left_ankle_pitch, left_ankle_roll, left_leg_x "
+        "and 8 more); the log only numbers them: 0, 1, 10 and 8 more (valid: 'joint_names: {renamed: {left_leg_x: '0', "
+        "left_leg_y: '1', left_leg_z: '2', ...}}' in the robot file, if the log has the URDF's order; plantar init "
+        "writes it whole)"
+    )
 
 
 def test_inspect_prints_one_line_and_fails(

@@ -40,7 +40,9 @@ def test_an_encoder_that_stands_while_its_leg_steps_is_told(
     (found,) = check_stepping_joints(robot, dead)
     assert (found.code, found.fatal, found.severity) == ("stuck_channel", False, "warning")
     assert f"column 'joint.left_ankle_pitch.position', t = {start:g} to " in found.text
-    assert "'right_ankle_pitch' turns" in found.text
+    said = found.text.partition(": stands still ")[2]
+    assert said.startswith("while its leg steps and 'right_ankle_pitch' turns 0.0")
+    assert said.endswith(" rad; is the encoder dead? (valid: leave such cells empty)")
     assert found in check_log(robot, dead)
 
 

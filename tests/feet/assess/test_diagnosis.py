@@ -45,9 +45,15 @@ def test_shares_are_of_variances_and_the_largest_limits() -> None:
     unbounded = [replace(row, interval95=None) for row in rows()]
     alone, _ = diagnose_axis(narrow, wide, [delay], unbounded)
     assert alone.half_width_percent == pytest.approx(196 * 5.0 / 400.0)
-    assert "64 % of its variance from delay" in stiffness.text
-    assert "pitch stiffness: ±0.12 %" in stiffness.text
-    assert "without it ±0.075 %" in stiffness.text, "the root of what is left of the variance"
+    # Without it the root of what is left of the variance.
+    assert stiffness.text == (
+        "left pitch stiffness: ±0.12 %, 64 % of its variance from delay; without it ±0.075 %. To tighten: "
+        f"{REMEDY['delay']}"
+    )
+    slip = diagnose_axis(narrow, wide, [delay], [replace(row, name="slip_torque") for row in rows()])[0]
+    assert slip.text.startswith("left pitch slip torque: ")
+    nothing = [replace(rows()[0], value=None), rows()[1]]
+    assert [row.name for row in diagnose_axis(narrow, wide, [delay], nothing)] == ["damping"]
     assert "nearly all of it from delay" in damping.text
     assert stiffness.advice == REMEDY["delay"]
     assert stiffness.advice in stiffness.text

@@ -43,15 +43,42 @@ def without(log: MotionLog, kind: str) -> MotionLog:
 def test_a_delay_is_asked_of_sensors_that_can_show_it(tmp_path: Path) -> None:
     robot, log = make_robot(tmp_path), record(sway("one", seed=1, duration=12.0))
     blind = prepare_all(robot, [without(log, "linear_acceleration")], [], KNOWN, str).fitted
-    assert remedies(KNOWN, UNKNOWN, robot, blind)["delay"].startswith("record the accelerometer of the IMU")
+    without_it = (
+        "of the IMU: without it no log shows the force sensors' delay; or give a delay that is known with "
+    )
+    assert remedies(KNOWN, UNKNOWN, robot, blind) == {
+        "delay": f"record the accelerometer {without_it}--wrench-delay"
+    }
+    blinder = prepare_all(
+        robot, [without(without(log, "linear_acceleration"), "angular_velocity")], [], KNOWN, str
+    ).fitted
+    assert remedies(KNOWN, UNKNOWN, robot, blinder) == {
+        "delay": f"record the accelerometer and the gyroscope {without_it}--wrench-delay"
+    }
+    assert "delay" not in remedies(KNOWN, UNKNOWN, replace(robot, imu=None), blinder)
     seeing = prepare_all(
         robot, [without(record(sway("other", 2, duration=12.0)), "linear_acceleration"), log], [], KNOWN, str
     ).fitted
     assert "delay" not in remedies(KNOWN, UNKNOWN, robot, seeing), "arm sweeps, as ever"
     shown = SensorDelay(0.002, 0.001, np.inf, True, UNKNOWN.note)
-    assert "arm sweeps at 0.3 to 1 Hz for longer" in remedies(KNOWN, shown, robot, seeing)["delay"]
+    badly = "these logs show the force sensors' delay, but not well"
+    assert remedies(KNOWN, shown, robot, seeing)["delay"] == (
+        f"record arm sweeps at 0.3 to 1 Hz for longer: {badly}"
+    )
+    assert "delay" not in remedies(KNOWN, replace(shown, doubtful=True), robot, seeing)
     unsure = replace(robot, guesses=(Guess("imu", "its name"),))
-    assert "measure where the IMU sits" in remedies(KNOWN, shown, unsure, seeing)["delay"]
+    assert remedies(KNOWN, shown, unsure, seeing)["delay"] == (
+        f"measure where the IMU sits, which is marked GUESS: {badly}"
+    )
+    parts = ("force.x", "force.y", "torque.z")
+    none = {f"wrench.{foot}.{part}": np.zeros(len(log)) for foot in robot.feet for part in parts}
+    on_cells = prepare_all(robot, [log.with_columns(none)], [], KNOWN, str).fitted
+    assert remedies(KNOWN, shown, robot, on_cells) == {
+        "delay": "measure how late the force cells are, and give it with --wrench-delay"
+    }
+    assert remedies(KNOWN, UNKNOWN, replace(robot, weighed=60.0), seeing) == {
+        "force gain": "calibrate the force sensors, which the number follows: the robot was weighed"
+    }
 
 
 def test_what_was_tried_is_not_advised(tmp_path: Path) -> None:
@@ -73,9 +100,18 @@ def test_a_vertical_stiffness_is_not_asked_of_the_same_motion_again(tmp_path: Pa
     ready = prepare_all(robot, [stands, steps], [], KNOWN, str).fitted
     assert hardly_standing([z_row()], ready) == [z_row()], "both feet stood: something else is the matter"
     (told,) = hardly_standing([z_row()], ready[1:])
-    assert told.reason.startswith("feet leave the floor in walk")
-    assert "lifting neither" in (told.advice or "")
+    assert told.reason == "feet leave the floor in walk"
+    assert told.advice == (
+        "stand on both feet and shift the weight slowly from foot to foot for 30 s or more, lifting neither"
+    )
+    of_pitch, known = replace(z_row(), axis="pitch"), replace(z_row(), value=7e5)
+    assert hardly_standing([of_pitch, known], ready[1:]) == [of_pitch, known]
+    many = [replace(ready[1], log=replace(ready[1].log, name=f"walk_{k}")) for k in range(4)]
+    assert hardly_standing([z_row()], many[:3])[0].reason == "feet leave the floor in walk_0, walk_1, walk_2"
+    assert hardly_standing([z_row()], many)[0].reason == "feet leave the floor in all 4 logs"
     short = prepare_all(robot, [record(sway("sway", 1, duration=12.0))], [], KNOWN, str).fitted
     (told,) = hardly_standing([z_row()], short)
-    seconds = float(told.reason.split("only ")[1].split(" s")[0])
+    begins, _, rest = told.reason.partition(" for only ")
+    assert (begins, rest.partition(" s ")[2]) == ("both soles stand flat together", "of sway")
+    seconds = float(rest.split(" s")[0])
     assert seconds == pytest.approx(12.0, abs=2.0)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,13 +13,14 @@ from biped import TRUTH, record, sway
 from bush_data_sets import Rubber
 from feet_trials import LINEAR, noisy, stepping
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.estimation.random_effects import Differences, furthest
-from plantar.feet.assess.odd_recordings import CODE, odd_recordings, odd_walks
+from plantar.estimation.random_effects import Differences, Odd, furthest
+from plantar.feet.assess.odd_recordings import CODE, _notes, odd_recordings, odd_walks
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
 from plantar.feet.regression.tangent import Tangent
 from plantar.feet.settings import FeetSettings
+from plantar.notes import Note
 from plantar.results.walk_rows import WalkStiffness
 from plantar.robot.model import RobotModel
 
@@ -41,7 +44,33 @@ def swaying(*feet: tuple[Rubber, float]) -> list[Recording]:
 def said(recordings: list[Recording], model: str = "kelvin_voigt") -> list[str]:
     fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model=model))
     assert fit is not None
+    assert odd_recordings(Tangent.of(fit, recordings, True), fit) == [], "of one offset for all"
     return [note.text for note in odd_recordings(Tangent.of(fit, recordings, False), fit)]
+
+
+FLOOR = "Was it recorded on another floor, on another sole, or with a joint read otherwise?"
+SIGN = "Has a joint, the IMU or a force sensor another sign, unit or axis in it?"
+
+
+@pytest.mark.parametrize(
+    ("odd", "names", "said"),
+    [
+        (Odd(1, -0.123, 0.0134, 0.0213), "abc", "b: left pitch: stiffness is -12 ± 1.3 % beside that of 2 other "
+         f"recordings, which agree within 2.1 % (standard deviation). {FLOOR}"),
+        (Odd(0, 0.123, 0.0134, 0.0), "ab",
+         f"a: left pitch: stiffness is +12 ± 1.3 % beside that of b, and nobody knows which is right. {FLOOR}"),
+        (Odd(1, 0.123, 0.0134, 0.0), "ab",
+         f"b: left pitch: stiffness is +12 ± 1.3 % beside that of a, and nobody knows which is right. {FLOOR}"),
+        (Odd(2, -0.76, 0.1, 0.02), "abcd",
+         f"c: left pitch: stiffness is nowhere near that of 3 other recordings. {SIGN}"),
+        (Odd(0, 0.76, 0.1, 0.0), "ab",
+         f"a: left pitch: stiffness is nowhere near that of b, and nobody knows which is right. {SIGN}"),
+    ],
+)  # fmt: skip
+def test_an_odd_recording_in_words(odd: Odd, names: str, said: str) -> None:
+    fit: Any = SimpleNamespace(foot="left", axis="pitch")
+    assert _notes(odd, fit, list(names)) == [Note(CODE, "warning", f"{said} Leave it out, or fit it alone")]
+    assert _notes(None, fit, list(names)) == []
 
 
 def test_the_odd_one_of_three_is_named_with_how_far_it_is() -> None:

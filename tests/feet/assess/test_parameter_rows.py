@@ -126,6 +126,12 @@ def test_a_slip_angle_is_worth_no_more_than_its_slip_torque(torque: float, verdi
         recording(), replace(fit, covariance=np.diag(std**2), freedom=np.full(4, 6.0), white_std=std)
     )
     assert [rows[place].verdict for place in places] == [verdict, verdict]
+    why = {
+        "weak": "its slip torque is hardly known",
+        "unidentifiable": "its slip torque is not told from zero",
+    }
+    assert rows[places[1]].reason == why.get(verdict, rows[places[1]].reason)
+    assert rows[places[1]].value == 0.01
 
 
 def test_an_angle_that_is_not_known_stays_so_beside_a_torque_that_hardly_is() -> None:
@@ -147,7 +153,8 @@ def test_an_element_that_slips_one_way_alone_may_be_larger(
         recording(), replace(fit_of(Elastoplastic(), (400.0, 20.0, 40.0)), covariance=np.eye(4) * 1e-9)
     )
     assert [row.verdict for row in rows] == [verdict, "usable", verdict, verdict]
-    assert all(("slips one way only" in rows[place].reason) is (verdict == "weak") for place in (0, 2))
+    way = "the rubber slips one way only: sway the robot forward and backward by larger angles"
+    assert all((rows[place].reason == way) is (verdict == "weak") for place in (0, 2))
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.9, "usable"), (1.1, "weak")])

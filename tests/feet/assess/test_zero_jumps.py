@@ -51,6 +51,10 @@ def test_a_jump_is_told_with_its_log_and_time(rubber: Rubber, model: str) -> Non
     (text,) = said(swaying(rubber, 6.0 * LATER), model)
     assert text.startswith("sway_1: t = 3")
     assert abs(float(text.split()[3]) - 33.0) < 0.3
+    assert text.partition(" s: ")[2] == (
+        f"the zero of {FOOT} pitch jumps: an encoder between IMU and foot slipped, or IMU or force sensor were zeroed "
+        "anew or are loose (valid: one zero throughout a log; cut it there)"
+    )
 
 
 @pytest.mark.parametrize("size", [1.0, 3.0])
@@ -65,7 +69,7 @@ def test_a_sensor_that_is_loose_jumps_to_and_fro(count: int) -> None:
     """Over longer means none of its jumps stands out, and none alone explains much."""
     loose = np.sign(np.sin(np.pi * (0.5 + count * np.arange(COUNT) / COUNT)))
     (text,) = said(swaying(PLAIN, 2.0 * loose))
-    assert f"the first of {count} times" in text
+    assert f" s, the first of {count} times: the zero of {FOOT} pitch jumps: " in text
 
 
 @pytest.mark.parametrize(

@@ -106,3 +106,18 @@ def test_a_message_has_the_fields_that_are_filled_and_named() -> None:
     imu = layout_of(IMU, "cdr", head + struct.pack("<37d", *range(37)))
     named = ["orientation", "orientation_covariance", "angular_velocity", "linear_acceleration"]
     assert [name for name, *_ in imu.fields] == named
+
+
+def test_messages_that_come_later_are_read_by_the_layout_that_is_known() -> None:
+    """Beside some of another size in between: each has its layout once."""
+    short, long = (
+        cdr_joint_state(names, [1.0] * len(names)) for names in (["hip"], ["hip", "knee_of_the_leg"])
+    )
+    topic = Topic("/joint_states", JOINT_STATE, "cdr")
+    for message, size in ((short, 3), (long, 2), (short, 4)):
+        buffer = np.frombuffer(message * size, np.uint8)
+        starts = [len(message) * place for place in range(size)]
+        topic.add(buffer, starts, [start + len(message) for start in starts], list(range(size)))
+    assert [layout.names for layout in topic.layouts] == [("hip",), ("hip", "knee_of_the_leg")]
+    assert (topic.count, topic.broken) == (9, 0)
+    assert [sum(map(len, part.header)) for part in topic.series.values()] == [7, 2]

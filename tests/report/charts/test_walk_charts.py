@@ -127,6 +127,20 @@ def test_of_many_swings_every_few_are_drawn(monkeypatch: pytest.MonkeyPatch) -> 
     assert dots(force, "component z")[-1].hover.startswith(f"{rows[-1].motion}, ")
 
 
+def test_each_recording_begins_where_the_one_before_it_ends_whatever_its_clock_says() -> None:
+    """Of two that last 4 s and 2 s, the gap between them a share of both: 6 % of 6 s."""
+    first = walk_result().swing_zeros[0]
+    rows = [
+        replace(first, motion=motion, time=time)
+        for motion, times in (("a", (100.0, 101.0, 104.0)), ("b", (7.0, 9.0)))
+        for time in times
+    ]
+    (force, _) = zero_charts(rows)
+    at = np.array([dot.x for dot in dots(force, "component z")])
+    seconds = np.array([0.0, 1.0, 4.0, 4.36, 6.36])
+    np.testing.assert_allclose((at - at[0]) / (at[-1] - at[0]), seconds / 6.36, atol=1e-3)
+
+
 def test_one_swing_is_a_chart_too() -> None:
     (force, _) = zero_charts(walk_result().swing_zeros[:1])
     assert len(dots(force, "component y")) == 1

@@ -37,7 +37,7 @@ def odd_recordings(tangent: Tangent, wide: AxisFit) -> list[Note]:
     Those are compared that tell the stiffness. Where a memory leaves less than one stiffness more does, it is the
     memory that makes small motions stiffer than large ones.
     """
-    if tangent.steps or tangent.shared or len(tangent.blocks) < 2:
+    if tangent.steps or tangent.shared:
         return []
     blocks = [
         replace(block, regressor=block.regressor[:, : len(BESIDE)], noise=None) for block in tangent.blocks
