@@ -9,6 +9,7 @@ import pytest
 
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.stances import Stances
 from plantar.feet.assess.diagnosis import REMEDY
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.interval_width.cause import inflated
@@ -84,6 +85,14 @@ def test_what_is_claimed_less_well_is_believed(
     assert len(causes) == said
     if causes:  # hardly anything is missing
         assert inflated(claimed(fit, share), causes).std[PLACE] == pytest.approx(UNRESOLVED * fit.shape[0])
+
+
+def test_of_a_foot_that_steps_it_is_known_less_well(fit: AxisFit, recordings: list[Recording]) -> None:
+    stances = Stances(np.arange(COUNT) // 500, np.ones(COUNT))
+    stepping = [replace(one, stances={FOOT: stances}) for one in recordings]
+    (cause,) = slip_angle_causes(Tangent.of(claimed(fit, 0.012), stepping, False))
+    assert cause.std == pytest.approx(0.016, rel=1e-6)
+    assert slip_angle_causes(Tangent.of(claimed(fit, 0.012), recordings, False)) == []
 
 
 def test_a_spring_without_memory_has_none(recordings: list[Recording]) -> None:
