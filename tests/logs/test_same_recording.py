@@ -39,7 +39,7 @@ def at(log: MotionLog, time: np.ndarray, name: str = "again", later: float = 0.0
 
 
 def filtered(log: MotionLog) -> MotionLog:
-    low = butter(2, 20, fs=200, output="sos")
+    low = butter(2, 30, fs=200, output="sos")
     return MotionLog(
         log.name, log.time, {name: sosfiltfilt(low, values) for name, values in log.columns.items()}
     )

@@ -33,8 +33,8 @@ SHORTEST = 2.0  # s
 # Correlation of the noise in nine of ten windows: it is alike wherever both logs last. 0.38 and more of one recording,
 # 0 at most of one motion played twice, whose impacts are alike, but not the noise between them.
 QUIET, ALIKE = 10, 0.2  # percentile, correlation
-# Share of a column's deviation: 1e-3 of filtered and thinned noise; 1e-5 of simulations without any, which are alike
-# even on other rubber.
+# Share of a column's deviation in those windows: 2e-4 and more of noise, filtered and thinned; 4e-5 at most of
+# simulations without any, which are alike even on other rubber.
 NOISY = 1e-4
 
 
@@ -133,7 +133,8 @@ def _alike(one: _Noise, other: _Noise) -> bool:
     both = np.zeros((2, len(first), count // 2 + 1), complex)
     both[:, :, faster] = smooth * first[:, faster.start - least :], smooth * second[:, faster.start - least :]
     x, y = irfft(both, count)[:, :, start : start + windows * WINDOW].reshape(2, len(first), windows, WINDOW)
-    if min(np.median(each.std(axis=(1, 2))) for each in (x, y)) < NOISY:
+    quiet = [np.median(np.percentile(each.std(axis=2), QUIET, axis=1)) for each in (x, y)]
+    if min(quiet) < NOISY:
         return False
     spread = np.sqrt((x**2).sum(axis=2) * (y**2).sum(axis=2))
     correlation = np.divide((x * y).sum(axis=2), spread, out=np.zeros_like(spread), where=spread > 0)

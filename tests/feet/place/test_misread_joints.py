@@ -92,6 +92,39 @@ def test_the_joint_is_named_and_neither_number_is_usable(
     assert all(row.verdict == "usable" for row in rows if row.axis not in (axis, "z"))
 
 
+@pytest.mark.parametrize(("joint", "axis"), [("left_ankle_roll", "roll"), ("right_ankle_pitch", "pitch")])
+def test_a_joint_of_the_other_sign_is_named(
+    robot: RobotModel, walks: list[MotionLog], joint: str, axis: str
+) -> None:
+    """Where it swings about its middle the wrenches balance gravity with either sign."""
+    found = identify_feet(robot, [misread(log, joint, -1.0) for log in walks], settings=LINEAR)
+    texts = [text for text in said(found) if "reversed" in text]
+    assert [text.partition(":")[0] for text in texts] == [f"{joint.partition('_')[0]} {axis}"]
+    assert f": the sign of '{joint}' reversed. " in texts[0]
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "share", "std", "told"),
+    [
+        (400.0, -2.0, 0.1, True),
+        (400.0, -1.4, 0.1, True),
+        (400.0, -2.6, 0.1, True),
+        (400.0, -1.2, 0.1, False),  # as of an encoder that is dead
+        (400.0, -2.8, 0.1, False),
+        (400.0, 2.0, 0.1, False),
+        (400.0, -2.0, 1.1, False),  # hardly known
+        (-400.0, -2.0, 0.1, False),  # no sign of this joint makes a bush of it
+    ],
+)
+def test_the_other_sign_makes_a_bush_of_it(stiffness: float, share: float, std: float, told: bool) -> None:
+    values = np.array([stiffness, 20.0, share * stiffness])
+    fit = SimpleNamespace(values=values, std=abs(stiffness) * np.array([0.1, 0.1, std]), squares=7.0)
+    wider: Any = SimpleNamespace(least_squares=fit)
+    unasked: Any = None
+    found = _misread("hip", "reversed", wider, unasked, np.array([-60.0, 20.0]))
+    assert found == (("hip", "reversed", pytest.approx(share), 7.0, True) if told else None)
+
+
 def test_play_in_an_encoders_drive_is_told_with_its_size(robot: RobotModel, walks: list[MotionLog]) -> None:
     found = identify_feet(robot, [with_play(log, "left_ankle_roll", 0.002) for log in walks], settings=LINEAR)
     (text,) = said(found)
