@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from biped import record, sines, sway
 from feet_trials import LINEAR, codes, noisy, stepping, without
 from plantar.feet.identify import identify_feet
-from plantar.feet.place.misread_joints import IMU_SOFT, MISREAD, OUT_OF_TIME, _misread
+from plantar.feet.place.misread_joints import IMU_SOFT, MISREAD, OUT_OF_TIME, _columns, _misread
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
@@ -123,6 +123,22 @@ def test_the_other_sign_makes_a_bush_of_it(stiffness: float, share: float, std: 
     unasked: Any = None
     found = _misread("hip", "reversed", wider, unasked, np.array([-60.0, 20.0]))
     assert found == (("hip", "reversed", pytest.approx(share), 7.0, True) if told else None)
+
+
+@pytest.mark.parametrize(("turn", "asked"), [(0.009, False), (0.011, True)])
+def test_a_joint_that_is_held_has_no_other_sign(
+    monkeypatch: pytest.MonkeyPatch, turn: float, asked: bool
+) -> None:
+    """It turns as its servo gives way, which goes with the torque."""
+    swings = turn * np.sin(np.linspace(0, 2 * np.pi, 101))
+    motion = np.column_stack([swings, swings, swings])
+    module = "plantar.feet.place.misread_joints"
+    monkeypatch.setattr(f"{module}._turns", lambda *_: {"knee": (np.ones((101, 2)), motion)})
+    monkeypatch.setattr(f"{module}._tilts", lambda *_: np.zeros((101, 2, 2)))
+    fit: Any = SimpleNamespace(foot="left", axis="pitch", values=np.array([400.0, 20.0]))
+    unasked: Any = None
+    names, columns = _columns(unasked, unasked, fit)
+    assert columns[:, names.index(("knee", "reversed"))].any() == asked
 
 
 def test_play_in_an_encoders_drive_is_told_with_its_size(robot: RobotModel, walks: list[MotionLog]) -> None:
