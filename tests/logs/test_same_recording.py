@@ -95,7 +95,7 @@ def test_what_has_no_force_sensors_in_common_or_is_too_short_or_slow_tells_nothi
     joints = MotionLog("joints", TIME, {"joint.a.position": log.columns[COLUMNS[0]]})
     short = [recording(name, 1, time=TIME[:300]) for name in ("a", "b")]
     slow = [recording(name, 1, time=np.arange(0, 30, 0.05)) for name in ("a", "b")]
-    for logs in ([log, joints], [joints, joints], short, slow):
+    for logs in ([log, joints], [joints, joints], short, slow, [log], []):
         assert not list(same_noise(logs))
 
 

@@ -66,6 +66,8 @@ def same_samples(log: MotionLog, other: MotionLog) -> bool:
 
 def same_noise(logs: Sequence[MotionLog]) -> Iterator[tuple[MotionLog, MotionLog]]:
     """Pairs of logs whose force sensors have the same noise, whatever their rates, clocks and digits."""
+    if len(logs) < 2:
+        return
     shared = sorted(set.intersection(*(set(log.columns) for log in logs)))
     sensors = [name for name in shared if name.startswith("wrench.")]
     names = sensors[:: max(1, len(sensors) // CHANNELS)]
