@@ -140,6 +140,25 @@ def test_an_inverted_attitude_is_told_by_accelerometer_or_gyroscope(log: MotionL
     assert all("inverted it agrees" in finding.text for finding in findings)
 
 
+@pytest.mark.parametrize(
+    ("quarters", "said"), [(1, "turns about axes 90 deg beside"), (2, "turned by 180 deg about z")]
+)
+def test_an_orientation_turned_about_the_imus_z_is_no_other_quaternion(
+    log: MotionLog, quarters: int, said: str
+) -> None:
+    """About one axis alone it turns as one would that is read otherwise, which the accelerometer may contradict."""
+    still = sines((0.0003, 0.3, 0.0))
+    nods = record(sway(torso=(still, sines((0.1, 0.4, 0.0), (0.03, 0.9, 1.0)), still)))
+    half = np.pi / 4 * quarters
+    w, x, y, z = (nods.column(name) for name in ORIENTATION)
+    c, s = np.cos(half), np.sin(half)
+    turned = (w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s)
+    (finding,) = check_imu("chest", nods.with_columns(dict(zip(ORIENTATION, turned, strict=True))))
+    assert finding.fatal
+    assert said in finding.text
+    assert ("it agrees" in finding.text) == (quarters == 2)  # half a turn is misread quaternions as well
+
+
 def test_an_accelerometer_that_points_down_is_told_of_without_a_gyroscope(log: MotionLog) -> None:
     (finding,) = check_imu("chest", scaled(ACCELEROMETER, -1.0)(without(GYROSCOPE)(log)))
     assert (finding.code, finding.fatal) == ("sign", True)

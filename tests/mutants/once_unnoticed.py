@@ -40,7 +40,7 @@ INTERVALS = (
 
 GUARDS = (
     Mutant(
-        "logs/inputs.py", "a recording that is told twice by half is none",
+        "logs/same_recording.py", "a recording that is told twice by half is none",
         "return len(asked & there) > max(1, share * len(asked))", "return len(asked & there) == len(asked) == PROBES",
         ("logs/test_inputs.py",),
     ),

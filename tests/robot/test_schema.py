@@ -248,8 +248,12 @@ def test_a_huge_robot_file_is_refused(tmp_path: Path) -> None:
 
 
 def test_missing_files(tmp_path: Path) -> None:
-    with pytest.raises(RobotError, match=r"nowhere\.yaml: cannot be read: No such file or directory$"):
+    with pytest.raises(
+        RobotError, match=r"nowhere\.yaml.*No such file.*`plantar init ROBOT\.urdf` writes a first one"
+    ):
         load_robot(tmp_path / "nowhere.yaml")
+    with pytest.raises(RobotError, match=r"is no robot file.*as `plantar init biped\.urdf` writes"):
+        load_robot(tmp_path / "biped.urdf")
     path = write_robot(tmp_path)
     (tmp_path / "biped.urdf").unlink()
     with pytest.raises(

@@ -31,6 +31,8 @@ SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by a
 SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
 PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
+QUARTERS = {"90": (0, 1), "180": (-1, 0), "-90": (0, -1)}  # cosine and sine, by degrees
+UPRIGHT = np.radians(25)  # up by the accelerometer and by the orientation are no further apart, but for noise
 IMU_LATE, SCALE, FRAME = "imu_late", "gyroscope_scale", "gyroscope_frame"
 BY_LEANS = frozenset({IMU_LATE, SCALE, FRAME})  # an orientation that leans looks like these as well
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
@@ -120,6 +122,17 @@ class Turns:
         return self.apart["as it is"] < RIGHT_TURN
 
     @property
+    def quarter_turns(self) -> str:
+        """By how many degrees about z the orientation's axes may be turned, to turn as the gyroscope does."""
+        found, moving = [], self.moving
+        for degrees, (x, y) in QUARTERS.items():
+            other = self.turn @ np.array([[x, y, 0], [-y, x, 0], [0, 0, 1]])
+            apart = np.linalg.norm((other - self.integral)[moving], axis=1) / self.size[moving]
+            if np.median(apart) < RIGHT_TURN:
+                found.append(degrees)
+        return " or ".join(found)
+
+    @property
     def about_world(self) -> bool:
         """Whether the gyroscope turns as the orientation does about the world's axes, and not about the IMU's own."""
         apart, from_world = (np.sum((self.integral - turn) ** 2) for turn in (self.turn, self.world))
@@ -162,13 +175,20 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
             return
     yield from imu_late(name, log, orientation)
     best = min(turns.apart, key=turns.apart.__getitem__)
+    beside = turns.quarter_turns
     if turns.apart[best] < min(RIGHT_TURN, BETTER * turns.apart["as it is"]):
-        yield misread(name, "turns another way than the gyroscope", best)
+        if beside and _leans(name, log, readings(orientation)[best]):
+            text = f"{where}: turns about axes {beside} deg beside the orientation's, about z"
+            yield Finding(FRAME, f"{text} (valid: both in the IMU's own frame)", True)
+            return
+        or_else = f", or with axes turned by {beside} deg about z" if beside else ""
+        yield misread(name, "turns another way than the gyroscope", best, or_else)
     elif turns.apart["as it is"] < WRONG_TURN:
         yield from _axes_and_scale(where, turns)
     else:
-        text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
-        yield Finding(FRAME, text)
+        text = f"{where}: turns about other axes than the orientation"
+        text += f", turned by {beside} deg about z" if beside else ""
+        yield Finding(FRAME, f"{text} (valid: both in the IMU's own frame)")
 
 
 def beside_leans(name: str, log: MotionLog, orientation: Array) -> list[Finding]:
@@ -260,6 +280,19 @@ def rows_to_compare(orientation: Array, acceleration: Array) -> NDArray[np.intp]
     """Samples in which both are known, spread over the log; None where there are too few."""
     whole = np.flatnonzero(complete(orientation, acceleration))
     return None if whole.size < FEWEST_COMPARED else spread_out(whole, COMPARED)
+
+
+def _leans(name: str, log: MotionLog, orientation: Array) -> bool:
+    """Whether up by the accelerometer contradicts an orientation (n, 4)."""
+    if not log.has_imu(name, "linear_acceleration"):
+        return False
+    acceleration = log.linear_acceleration(name)
+    rows = rows_to_compare(orientation, acceleration)
+    if rows is None:
+        return False
+    up = rotation_from_quaternion(orientation[rows])[:, 2]
+    cosines = np.sum(up * acceleration[rows], axis=1) / np.linalg.norm(acceleration[rows], axis=1)
+    return bool(np.median(cosines) < np.cos(UPRIGHT))
 
 
 def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:

@@ -33,11 +33,11 @@ def turns_between(before: Array, after: Array) -> Array:
     return np.asarray((np.where(cosine < 0, -angle, angle) / np.where(size > 0, size, 1.0))[:, None] * sine)
 
 
-def misread(name: str, text: str, reading: str) -> Finding:
-    """What is said of an IMU whose quaternions agree only in another reading."""
+def misread(name: str, text: str, reading: str, or_else: str = "") -> Finding:
+    """What is said of an IMU whose quaternions agree only in another reading, `or_else` with something beside it."""
     valid = "w x y z" if reading == "read as x y z w" else "body to world"
     return Finding(
         "quaternion_order",
-        f"columns 'imu.{name}.orientation.*': {text}; {reading} it agrees (valid: {valid})",
+        f"columns 'imu.{name}.orientation.*': {text}; {reading} it agrees{or_else} (valid: {valid})",
         True,
     )

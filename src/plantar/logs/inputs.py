@@ -19,6 +19,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import of_robot, open_log, reads_alike
 from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
 from plantar.logs.readers.urdf_names import with_following_joints
+from plantar.logs.same_recording import same_noise, same_samples
 from plantar.logs.stretches import LONGEST
 
 if TYPE_CHECKING:
@@ -28,9 +29,6 @@ PathInput = str | os.PathLike[str]
 RobotInput: TypeAlias = "RobotModel | PathInput"
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
-PROBES = 40  # samples of a log that another one may hold as well
-OVERLAP = 0.1  # share of a log that another may hold too: it narrows intervals by a twentieth at most
-BEGUN_ALIKE = 0.5  # the same of logs that begin alike, as simulations without noise do before they part
 AHEAD = 2**26  # bytes of text: read by the time that what works on logs is imported
 FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
 
@@ -173,36 +171,15 @@ def check_names(logs: Sequence[MotionLog]) -> None:
             message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
         for other in seen.values():
-            if _same_recording(log, other):
+            if same_samples(log, other):
                 message = f"{other.source} and {log.source} hold the same recording, or a part of one"
                 raise DataError(f"{message} ({once})")
         seen[log.name] = log
-
-
-def _same_recording(log: MotionLog, other: MotionLog) -> bool:
-    """Whether many of the shorter log's samples are samples of the longer one: as they are, cut, thinned, on another
-    clock, or with other columns beside the same force sensors: joints alone may do the same twice."""
-    short, long = sorted((log, other), key=len)
-    shared = sorted(short.columns.keys() & long.columns.keys())
-    forces = any(name.startswith("wrench.") for name in shared)
-    measured = forces or short.columns.keys() == long.columns.keys()
-    if not shared or not len(short) or not measured:
-        return False
-    probes = np.linspace(0, len(short) - 1, PROBES).astype(int)
-    # What has been left out of both tells nothing twice.
-    whole = np.isfinite(np.sum([short.columns[name][probes] for name in shared], axis=0))
-    probes = probes[whole] if whole.any() else probes
-    told = {name: short.columns[name][probes] for name in shared}
-    finest = max(told, key=lambda name: len(np.unique(told[name])))
-    alike = np.isin(long.columns[finest], np.unique(told[finest]))
-    asked, there = (
-        {row.tobytes() for row in np.column_stack(columns)}
-        for columns in (list(told.values()), [long.columns[name][alike] for name in told])
-    )
-    alike_at_first = all(short.columns[name][0] == long.columns[name][0] for name in shared)
-    share = BEGUN_ALIKE if alike_at_first else OVERLAP
-    # Noise-free logs may rest alike: that is one sample of all.
-    return len(asked & there) > max(1, share * len(asked))
+    for other, log in same_noise(logs):
+        message = f"{other.source} and {log.source} hold the same recording, or a part of one"
+        raise DataError(
+            f"{message}, resampled or written otherwise: their sensors have the same noise ({once})"
+        )
 
 
 def _bounded(logs: Sequence[LogInput], memory: int) -> bool:

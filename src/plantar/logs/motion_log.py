@@ -162,6 +162,7 @@ class MotionLog:
             ):
                 names = ", ".join(device.partition(".")[2] for device in devices)
                 valid = f"in the robot file {kind}.name as the log has it: {names}"
+                valid += "; and no foot without a force sensor" * (kind == "wrench")
             raise LogError("is missing", path=self.source, column=name, valid=valid) from None
 
     def stack(self, names: Iterable[str]) -> Array:

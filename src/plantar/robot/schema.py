@@ -6,6 +6,8 @@ It is written in the terms of pydantic's core: pydantic's own classes take a ten
 from __future__ import annotations
 
 import difflib
+import errno
+import os
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -24,6 +26,7 @@ DEPTH_LIMIT = 20  # levels of nesting: a robot file needs five
 LONGEST_SOLE = 1.0  # m from its frame to a corner: no robot walks on longer ones
 LONGEST_LINK = 3.0  # m from a link's frame to a sensor on it: no walking robot has longer ones
 FULL_TURN = 6.3  # rad, a little more than 2π
+URDF_ENDINGS = (".urdf", ".xacro", ".xml")
 LARGEST_DEVIATION = 1.0  # of a share, m, rad or s: whoever writes more means another unit
 
 Entry = Mapping[str, Any]  # a checked part of the file, its defaults filled in
@@ -155,6 +158,15 @@ def read_robot_file(path: Path) -> tuple[Entry, tuple[Guess, ...]]:
 
     Raises RobotError: one line that says which key is wrong and what would be valid.
     """
+    if path.suffix.lower() in URDF_ENDINGS:
+        raise RobotError(
+            "is no robot file", path=path, valid=f"a YAML file, as `plantar init {path.name}` writes"
+        )
+    if not path.exists():
+        problem = os.strerror(errno.ENOENT)
+        raise RobotError(
+            f"cannot be read: {problem}", path=path, valid="`plantar init ROBOT.urdf` writes a first one"
+        )
     data, content = read_yaml(path)
     if not isinstance(data, dict):
         raise RobotError("holds no keys", path=path, valid="name, urdf, imu, feet, as `plantar init` writes")

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from biped import record, sines, sway
 from feet_trials import LINEAR, codes, noisy, stepping, without
 from plantar.feet.identify import identify_feet
-from plantar.feet.place.misread_joints import IMU_SOFT, MISREAD, OUT_OF_TIME, _misread
+from plantar.feet.place.misread_joints import IMU_SOFT, MISREAD, OUT_OF_TIME, _columns, _misread
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
@@ -90,6 +90,55 @@ def test_the_joint_is_named_and_neither_number_is_usable(
     doubted = [row.axis for row in rows if "error of measurement" in row.reason]
     assert doubted == [axis, axis]
     assert all(row.verdict == "usable" for row in rows if row.axis not in (axis, "z"))
+
+
+@pytest.mark.parametrize(("joint", "axis"), [("left_ankle_roll", "roll"), ("right_ankle_pitch", "pitch")])
+def test_a_joint_of_the_other_sign_is_named(
+    robot: RobotModel, walks: list[MotionLog], joint: str, axis: str
+) -> None:
+    """Where it swings about its middle the wrenches balance gravity with either sign."""
+    found = identify_feet(robot, [misread(log, joint, -1.0) for log in walks], settings=LINEAR)
+    texts = [text for text in said(found) if "reversed" in text]
+    assert [text.partition(":")[0] for text in texts] == [f"{joint.partition('_')[0]} {axis}"]
+    assert f": the sign of '{joint}' reversed. " in texts[0]
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "share", "std", "told"),
+    [
+        (400.0, -2.0, 0.1, True),
+        (400.0, -1.4, 0.1, True),
+        (400.0, -2.6, 0.1, True),
+        (400.0, -1.2, 0.1, False),  # as of an encoder that is dead
+        (400.0, -2.8, 0.1, False),
+        (400.0, 2.0, 0.1, False),
+        (400.0, -2.0, 1.1, False),  # hardly known
+        (-400.0, -2.0, 0.1, False),  # no sign of this joint makes a bush of it
+    ],
+)
+def test_the_other_sign_makes_a_bush_of_it(stiffness: float, share: float, std: float, told: bool) -> None:
+    values = np.array([stiffness, 20.0, share * stiffness])
+    fit = SimpleNamespace(values=values, std=abs(stiffness) * np.array([0.1, 0.1, std]), squares=7.0)
+    wider: Any = SimpleNamespace(least_squares=fit)
+    unasked: Any = None
+    found = _misread("hip", "reversed", wider, unasked, np.array([-60.0, 20.0]))
+    assert found == (("hip", "reversed", pytest.approx(share), 7.0, True) if told else None)
+
+
+@pytest.mark.parametrize(("turn", "asked"), [(0.009, False), (0.011, True)])
+def test_a_joint_that_is_held_has_no_other_sign(
+    monkeypatch: pytest.MonkeyPatch, turn: float, asked: bool
+) -> None:
+    """It turns as its servo gives way, which goes with the torque."""
+    swings = turn * np.sin(np.linspace(0, 2 * np.pi, 101))
+    motion = np.column_stack([swings, swings, swings])
+    module = "plantar.feet.place.misread_joints"
+    monkeypatch.setattr(f"{module}._turns", lambda *_: {"knee": (np.ones((101, 2)), motion)})
+    monkeypatch.setattr(f"{module}._tilts", lambda *_: np.zeros((101, 2, 2)))
+    fit: Any = SimpleNamespace(foot="left", axis="pitch", values=np.array([400.0, 20.0]))
+    unasked: Any = None
+    names, columns = _columns(unasked, unasked, fit)
+    assert columns[:, names.index(("knee", "reversed"))].any() == asked
 
 
 def test_play_in_an_encoders_drive_is_told_with_its_size(robot: RobotModel, walks: list[MotionLog]) -> None:

@@ -73,8 +73,8 @@ def misread_notes(
 
 HEAD = "left roll: the torque follows the angle far better if one error of measurement is taken off: "
 TAIL = (
-    ". Stiffness and damping follow it (valid: encoders without play, whose angles are the links', all read at one "
-    "moment; a stiff mount of the IMU)"
+    ". Stiffness and damping follow it (valid: encoders without play, whose angles are the links' and have the URDF's "
+    "signs, all read at one moment; a stiff mount of the IMU)"
 )
 KNEE, HIP, LEG, IMU = ("knee", "gain"), ("hip", "late"), ("all joints", "together"), ("the IMU", "soft")
 

@@ -18,8 +18,8 @@ from plantar.sensors.delays.sensor_delay import SensorDelay, on_force_cells
 SHOWS_DELAY: Final = {"linear_acceleration": "accelerometer", "angular_velocity": "gyroscope"}
 LEAST_TOGETHER: Final = 30.0  # s, as long as the shift of the weight that is advised
 NO_BETTER_MODEL: Final = (
-    "more logs like these will not help, nor does any other model of the rubber that was tried: record other motions, "
-    "slower or larger ones"
+    "more logs like these will not help, nor does any other model of the rubber that was tried: record other motions: "
+    "slower or larger ones for the stiffness, faster ones for the damping"
 )
 
 

@@ -1,6 +1,6 @@
 """Joints between IMU and foot that are not read as the robot file says: a few per cent too much, late by themselves or
-all together, or behind by the play of their encoder's drive; or the IMU itself, whose soft mount lets it tilt as it is
-accelerated.
+all together, behind by the play of their encoder's drive, or with the other sign, which stands of both feet and other
+joints may hide; or the IMU itself, whose soft mount lets it tilt as it is accelerated.
 
 While a foot steps, joints bend its bush and turn the robot over it at the same time: an ankle or a hip that reads 3 %
 too much makes the spring 8 % softer. What such a joint adds to the bush's angle is not what the bush itself does, and
@@ -30,11 +30,17 @@ OUT_OF_TIME, IMU_SOFT = "imu_out_of_time", "imu_soft"
 # Times less that is left of the squares than by the bush alone; play shows at its joint's turns only, and a soft mount
 # beside hysteresis, which takes most of what it leaves. Of an IMU on a stiff one under standing feet 1.1 at most.
 BETTER, BETTER_TURNING = 1.5, 1.3
-BETTER_OF = {"play": BETTER_TURNING, "soft": BETTER_TURNING}
+# Behind the sign of an ankle or a hip the bush's place is moved by centimetres, which takes a part of what it leaves:
+# 1.23 times less is left by the right joint's sign, 1.18 by other joints' at most, whose sizes are no signs.
+BETTER_REVERSED = 1.2
+BETTER_OF = {"play": BETTER_TURNING, "soft": BETTER_TURNING, "reversed": BETTER_REVERSED}
 ALIKE = 1.25  # times as much as the best one leaves: which of two joints it is, such motions do not tell
 # What a joint may be misread by, that other checks do not see: more is another fault, or a joint that hardly matters.
 GAIN, LATE, PLAY, SOFT_MOUNT = 0.2, 0.03, 0.02, 0.02  # share; s; rad; rad per m/s²
 ALL_LATE = 0.25  # s, likewise of all joints, which are late together where it is the IMU that is early
+# A joint of the other sign turns by -2 of what is read more than is read: -2.4 to -1.4 where its bush was moved.
+OTHER_SIGN, NEAR_IT = -2.0, 0.7
+LEAST_TURN = 0.02  # rad: what turns by less, as a joint that is held, turns by what its servo gives way
 SOFT_MOVES = 0.02  # share of stiffness or damping that a soft mount has to move
 # Of an interval, by which play of a joint, or hysteresis of a sensor, moves its number: both stay behind only after a
 # turn is far enough, so that the sign of a rate gives back half of what is missing at most.
@@ -63,6 +69,8 @@ class Misread(NamedTuple):
             return f"{which} {1e3 * abs(self.size):.3g} ms {when}{also}"
         if self.kind == "soft":
             return f"{self.joint} tilts by {1e3 * abs(self.size):.2g} mrad for each m/s², as on a soft mount"
+        if self.kind == "reversed":
+            return f"the sign of '{self.joint}' reversed"
         if self.kind == "play":
             return f"'{self.joint}' {2e3 * self.size:.2g} mrad behind wherever it turns round"
         return f"'{self.joint}' {1 / (1 + self.size):.3g} times"
@@ -95,7 +103,7 @@ def misread_joint_notes(robot: RobotModel, tangent: Tangent, wide: AxisFit) -> l
     text = (
         f"{wide.foot} {wide.axis}: the torque follows the angle far better if one error of measurement is taken off: "
         f"{', or '.join(map(str, alike))}. Stiffness and damping follow it (valid: encoders without play, whose angles "
-        "are the links', all read at one moment; a stiff mount of the IMU)"
+        "are the links' and have the URDF's signs, all read at one moment; a stiff mount of the IMU)"
     )
     kinds = {one.kind for one in alike}
     code = OUT_OF_TIME if kinds == {"together"} else IMU_SOFT if kinds == {"soft"} else MISREAD
@@ -106,6 +114,10 @@ def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array)
     """A joint that is surely misread, by a tangent with its column as the last; usual: (k,), the values without it."""
     fit = wider.least_squares
     size, std = float(fit.values[-1]), float(fit.std[-1])
+    if kind == "reversed":
+        share = size / float(fit.values[0])
+        sign = fit.values[0] > 0 and abs(size) > SURE * std and abs(share - OTHER_SIGN) < NEAR_IT
+        return Misread(joint, kind, share, fit.squares, True) if sign else None
     most = {"gain": GAIN, "late": LATE, "together": ALL_LATE, "play": PLAY, "soft": SOFT_MOUNT}[kind]
     away = size if kind == "play" else abs(size)  # no drive is ahead of its joint
     if not (SURE * std < away < most and not fit.singular):
@@ -119,7 +131,8 @@ def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array)
 
 def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> tuple[list[tuple[str, str]], Array]:
     """Joints and kinds (c,), and the torque (n, c) of each at the rows of a fit: for each share by which a joint turns
-    more than is read, for each second by which it is read later, for each radian by which it stays behind its own rate;
+    more than is read, for each second by which it is read later, for each radian by which it stays behind its own rate,
+    for each N·m/rad of the stiffness by as much as it turns more, of those that turn;
     and for each radian by which the IMU tilts with each m/s²."""
     columns = dict[tuple[str, str], Array]()
     for joint, (shares, motion) in _turns(robot, recording, fit.foot).items():
@@ -129,6 +142,8 @@ def _columns(robot: RobotModel, recording: Recording, fit: AxisFit) -> tuple[lis
         fast = float(np.percentile(np.abs(motion[:, 1]), FAST))
         turns = np.tanh(motion[:, 1] / (SOFT * fast)) if fast > 0 else np.zeros_like(own)
         columns[joint, "play"] = own * fit.values[0] * turns
+        # The stiffness so far may be anything: a hip of the other sign makes it next to 0.
+        columns[joint, "reversed"] = own * motion[:, 0] * (np.ptp(motion[:, 0]) > LEAST_TURN)
     # One bus often reads all joints of a leg.
     if late := [column for (_, kind), column in columns.items() if kind == "late"]:
         columns[f"all joints to the {fit.foot} foot", "together"] = np.sum(late, axis=0)
