@@ -11,10 +11,13 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from numpy.fft import irfft, rfft
+from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
+
+Spectrum = NDArray[np.complexfloating]
 
 PROBES = 40  # samples of a log that another one may hold as well
 OVERLAP = 0.1  # share of a log that another may hold too: it narrows intervals by a twentieth at most
@@ -74,9 +77,19 @@ def same_noise(logs: Sequence[MotionLog]) -> Iterator[tuple[MotionLog, MotionLog
     sensors = [name for name in shared if name.startswith("wrench.")]
     names = sensors[:: max(1, len(sensors) // CHANNELS)]
     heard = [(log, noise) for log in logs if names and (noise := _noise(log, names)) is not None]
-    for (one, first), (other, second) in combinations(heard, 2):
-        if _alike(first, second):
-            yield one, other
+    if len(heard) < 2:
+        return
+    count = _fast(2 * max(noise.values.shape[1] for _, noise in heard))
+    spectra = [rfft(noise.values, count) for _, noise in heard]
+    for first, second in combinations(range(len(heard)), 2):
+        if _alike(heard[first][1], heard[second][1], spectra[first], spectra[second], count):
+            yield heard[first][0], heard[second][0]
+
+
+def _fast(count: int) -> int:
+    """The least length from `count` on that is two or three times a power of two: Fourier transforms of it are fast."""
+    power: int = 2 ** (max(count, 2) - 1).bit_length()
+    return power if count > 3 * power // 4 else 3 * power // 4
 
 
 class _Noise(NamedTuple):
@@ -95,9 +108,9 @@ def _noise(log: MotionLog, names: Sequence[str]) -> _Noise | None:
     step = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
     if not step > 0 or OF_RATE / step < 2 * SLOWEST or time[-1] < SHORTEST:
         return None
-    kept = next_fast_len(int(np.ceil(FASTEST * time[-1])))
+    kept = _fast(int(np.ceil(FASTEST * time[-1])))
     lasts = kept / FASTEST
-    count = next_fast_len(int(np.ceil(lasts / step)), real=True)
+    count = _fast(int(np.ceil(lasts / step)))
     even = lasts / count * np.arange(count)
     fade = np.clip(np.minimum(even, time[-1] - even) / (EDGE * time[-1]), 0.0, 1.0)
     values, motion = np.zeros((2, len(names), 2 * kept))
@@ -113,18 +126,21 @@ def _noise(log: MotionLog, names: Sequence[str]) -> _Noise | None:
     return _Noise(values, motion, int(RATE * time[-1]), min(FASTEST, OF_RATE / step))
 
 
-def _alike(one: _Noise, other: _Noise) -> bool:
-    """Whether two logs' noise is the same at some lag, throughout the time in which both last."""
-    count = next_fast_len(one.values.shape[1] + other.values.shape[1], real=True)
+def _alike(one: _Noise, other: _Noise, first: Spectrum, second: Spectrum, count: int) -> bool:
+    """Whether two logs' noise is the same at some lag, throughout the time in which both last; `first`, `second` (c,
+    count // 2 + 1): its Fourier transforms of `count` samples."""
     least, most = (int(edge * count / RATE) for edge in (SLOWEST, min(one.top, other.top)))
-    first, second = (rfft(each.values, count)[:, least:most] for each in (one, other))
+    first, second = first[:, least:most], second[:, least:most]
     across = first * second.conj()
     sizes = np.abs(across)
-    phases = np.zeros(FINER * count // 2 + 1, complex)
-    phases[least:most] = np.divide(across, sizes, out=np.zeros_like(across), where=sizes > 0).sum(axis=0)
-    agreement = irfft(phases, FINER * count) * (FINER * count / 2)
+    phases = np.divide(across, sizes, out=np.zeros_like(across), where=sizes > 0).sum(axis=0)
+    enough = AGREE * np.sqrt(across.size)
+    # Whole samples first: between two of them at least half is left of an agreement.
+    if _agreement(phases, least, count, 1).max() < enough / 2:
+        return False
+    agreement = _agreement(phases, least, count, FINER)
     lag = int(np.argmax(agreement))
-    if agreement[lag] < AGREE * np.sqrt(across.size):
+    if agreement[lag] < enough:
         return False
     second = second * np.exp(-2j * np.pi * np.arange(least, most) * lag / (FINER * count))
     later = lag / FINER - (
@@ -146,6 +162,13 @@ def _alike(one: _Noise, other: _Noise) -> bool:
     spread = np.sqrt((x**2).sum(axis=2) * (y**2).sum(axis=2))
     correlation = np.divide((x * y).sum(axis=2), spread, out=np.zeros_like(spread), where=spread > 0)
     return bool(np.percentile(np.median(correlation, axis=0), QUIET) > ALIKE)
+
+
+def _agreement(phases: Spectrum, least: int, count: int, finer: int) -> Array:
+    """Sum of cosines of phases from the frequency `least` on, (count * finer,), at lags of parts of a sample."""
+    every = np.zeros(finer * count // 2 + 1, complex)
+    every[least : least + len(phases)] = phases
+    return np.asarray(irfft(every, finer * count) * (finer * count / 2))
 
 
 def _moved_alike(first: Array, second: Array, start: int, stop: int, later: int) -> bool:
