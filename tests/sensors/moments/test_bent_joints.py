@@ -220,6 +220,22 @@ def test_what_a_wrong_urdf_does_as_well_tells_nothing(twin: RobotModel, mean: fl
     assert joint_bending(twin, MomentFit(values, [Part(1e-16 * np.eye(count), 39.0)])).found == some
 
 
+@pytest.mark.parametrize(
+    ("mean", "left", "found"),
+    [(0.0, 0.0, False), (2.2e-5, 1.2e-5, False), (4e-5, 1.2e-5, True), (-2.2e-5, 0.0, False)],
+)
+def test_what_is_neither_shown_nor_excluded_is_left_open(
+    twin: RobotModel, mean: float, left: float, found: bool
+) -> None:
+    """Logs stay as they are, and a knee may bend, about as far as it seems to."""
+    columns, count = compliance_columns(twin), len(prior_deviations(twin))
+    values = np.zeros(count)
+    values[columns] = mean
+    bending = joint_bending(twin, MomentFit(values, [Part((1.5e-5) ** 2 * np.eye(count), 39.0)]))
+    assert bending.found == found
+    assert of(twin, bending, "LLEG_JOINT3")[1] == pytest.approx(left, rel=0.3, abs=1e-12)
+
+
 def test_rows_of_a_walk_change_as_what_it_misses_does(twin: RobotModel) -> None:
     """Of few samples each second, at motion as quick as a walk's: derivatives of these had been a fifth too small."""
     walk = checked(twin, walked())
