@@ -181,6 +181,10 @@ def test_a_foot_that_steps_is_left_out_near_its_edge(inside: float, used: bool) 
     tipped = replace(recording, raw=raw, bushes=seen)
     (rest,), (before,) = (without_edge_rolling(twin, [one], FeetSettings()) for one in (tipped, recording))
     assert (rest.used("left") & middle).any() == used
+    # Nor does it matter that others stand, and show how stiff the bush is.
+    standing = replace(recording, stances=dict.fromkeys(recording.stances))
+    beside, _ = without_edge_rolling(twin, [tipped, standing], FeetSettings())
+    assert (beside.used("left") & middle).any() == used
     elsewhere = (stances.number >= 0) & (stances.number != 2)
     assert (rest.used("left") == before.used("left"))[elsewhere].all()
 

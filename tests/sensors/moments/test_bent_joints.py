@@ -10,7 +10,7 @@ import pytest
 from before_gears import before_gears, torques_in
 from feet_trials import without
 from moments import fit_moments
-from plantar.conventions import NORMAL95
+from plantar.conventions import GRAVITY, NORMAL95
 from plantar.dynamics import Contact
 from plantar.dynamics.equation import equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
@@ -19,8 +19,10 @@ from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.sensor_delay import known_delay
+from plantar.sensors.moments.bending_odds import bending_odds
 from plantar.sensors.moments.bent_joints import (
     BENT,
+    USUAL,
     JointBending,
     joint_bending,
     joint_bending_notes,
@@ -222,18 +224,23 @@ def test_what_a_wrong_urdf_does_as_well_tells_nothing(twin: RobotModel, mean: fl
 
 @pytest.mark.parametrize(
     ("mean", "left", "found"),
-    [(0.0, 0.0, False), (2.2e-5, 1.2e-5, False), (4e-5, 1.2e-5, True), (-2.2e-5, 0.0, False)],
+    [(0.0, False, False), (2.2e-5, True, False), (4e-5, True, True), (-2.2e-5, False, False)],
 )
 def test_what_is_neither_shown_nor_excluded_is_left_open(
-    twin: RobotModel, mean: float, left: float, found: bool
+    twin: RobotModel, mean: float, left: bool, found: bool
 ) -> None:
-    """Logs stay as they are, and a knee may bend, about as far as it seems to."""
-    columns, count = compliance_columns(twin), len(prior_deviations(twin))
+    """Logs stay as they are, and joints may bend as far as they may about stiff ones."""
+    columns, count, load = compliance_columns(twin), len(prior_deviations(twin)), twin.mass * GRAVITY
     values = np.zeros(count)
     values[columns] = mean
-    bending = joint_bending(twin, MomentFit(values, [Part((1.5e-5) ** 2 * np.eye(count), 39.0)]))
+    bending = joint_bending(twin, MomentFit(values, [Part((1.5e-5) ** 2 * np.eye(count), 1e9)]))
     assert bending.found == found
-    assert of(twin, bending, "LLEG_JOINT3")[1] == pytest.approx(left, rel=0.3, abs=1e-12)
+    every, legs, ankles = np.ones(8), np.repeat([1.0, 0.0], [6, 2]), np.repeat([0.0, 1.0, 0.0], [4, 2, 2])
+    covariance = (1.5e-5 * load) ** 2 * np.eye(8) + USUAL**2 * (1 + np.eye(8))
+    odds = bending_odds(load * mean * every, covariance, (every, legs, ankles), 0.0)
+    square = odds.covariance[3, 3] + (0.0 if found else odds.mean[3] ** 2)
+    variance = of(twin, bending, "LLEG_JOINT3")[1] ** 2
+    assert variance == pytest.approx(square / load**2 if left else 0.0, rel=1e-6)
 
 
 def test_rows_of_a_walk_change_as_what_it_misses_does(twin: RobotModel) -> None:
