@@ -88,7 +88,8 @@ def test_a_log_is_shown_as_fast_as_it_was_recorded(replay: Replay, monkeypatch: 
 def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, replay: Replay) -> None:
     """The test biped's bush is 30 mm over its sole, and turns the other way than the sole that is drawn flat."""
     with live.LiveView(robot, port=8491) as view:
-        for foot, side in (("left", -0.15), ("right", 0.15)):
+        assert live.from_the_right(robot) == ["right", "left"]  # whatever their order in the robot file
+        for foot, side in (("left", 0.15), ("right", -0.15)):
             assert view._feet[foot]._ankle.position == pytest.approx((0.0, side, 0.03))
             assert view._feet[foot]._name.text == foot
             assert view._feet[foot]._name.position[1] == pytest.approx(side)
@@ -101,7 +102,7 @@ def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, r
         expected = (Rotation.from_euler("y", pitch) * Rotation.from_euler("x", roll)).inv()
         assert (turn.inv() * expected).magnitude() == pytest.approx(0.0, abs=1e-6)
         above = turn.apply([0.0, 0.0, live.HEIGHT / 2])
-        assert ankle.position == pytest.approx([0.0 + above[0], -0.15 + above[1], 0.03 + above[2]], abs=1e-6)
+        assert ankle.position == pytest.approx([0.0 + above[0], 0.15 + above[1], 0.03 + above[2]], abs=1e-6)
 
 
 def test_a_plots_scale_holds_its_values_and_a_little_more() -> None:

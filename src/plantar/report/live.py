@@ -59,7 +59,8 @@ class LiveView:
             self.server = viser.ViserServer("127.0.0.1", port, label="plantar online", verbose=False)
         self.server.initial_camera.position = CAMERA
         self.url = f"http://127.0.0.1:{self.server.get_port()}"
-        self._feet = {name: _FootView(self.server, robot, name) for name in robot.feet}
+        order = from_the_right(robot)
+        self._feet = {name: _FootView(self.server, robot, name, order.index(name)) for name in robot.feet}
         self._next = -np.inf
 
     def __enter__(self) -> Self:
@@ -88,17 +89,29 @@ class LiveView:
                 self._feet[name].show(now, estimate)
 
 
+def from_the_right(robot: RobotModel) -> list[str]:
+    """The feet in the order in which they stand, all joints at zero."""
+    rotations, places = robot.tree.poses(np.zeros((1, len(robot.joint_names))))
+
+    def aside(name: str) -> float:
+        joint, sole = robot.frame(robot.feet[name].sole.placement)
+        return float(places[joint, 0, 1] + rotations[joint, 0, 1] @ sole.translation)
+
+    return sorted(robot.feet, key=aside)
+
+
 class _FootView:
     """One foot's shapes in the scene and its plots beside it."""
 
-    def __init__(self, server: viser.ViserServer, robot: RobotModel, name: str) -> None:
+    def __init__(self, server: viser.ViserServer, robot: RobotModel, name: str, place: int) -> None:
+        """place: of the foot, counted from the right."""
         foot = robot.feet[name]
         outline = convex_hull(foot.sole.polygon)
-        aside = np.array([0.0, 0.3 * (list(robot.feet).index(name) - (len(robot.feet) - 1) / 2), 0.0])
+        aside = np.array([0.0, 0.3 * (place - (len(robot.feet) - 1) / 2), 0.0])
         to_bush = (robot.frame(foot.sole.placement)[1].inverse() * robot.frame(foot.bush)[1]).translation
         self._middle = aside + to_bush
         flat = np.column_stack([outline, np.zeros(len(outline))])
-        fan = np.array([[0, place, place + 1] for place in range(1, len(flat) - 1)])
+        fan = np.array([[0, corner, corner + 1] for corner in range(1, len(flat) - 1)])
         scene = server.scene
         self._sole = scene.add_mesh_simple(
             f"{name}/sole", flat + aside, fan, color=(120, 120, 120), side="double"
