@@ -65,7 +65,11 @@ def test_what_is_drawn_of_two_feet_is_as_it_is_kept(tmp_path: Path) -> None:
     robot = load_robot(write_robot(tmp_path, feet=entry["feet"]))
     server, view = Server(), live.LiveView.__new__(live.LiveView)
     view.server = server  # type: ignore[assignment]
-    view._feet = {name: live._FootView(server, robot, name) for name in robot.feet}  # type: ignore[arg-type]
+    order = live.from_the_right(robot)
+    view._feet = {
+        name: live._FootView(server, robot, name, order.index(name))  # type: ignore[arg-type]
+        for name in robot.feet
+    }
     view._next = 0.0
     view.show(3.0, {"left": STANDS, "right": FLIES})
     view.show(3.5, {"left": replace(STANDS, contact=Contact.LANDING, flags=Flag.SLIP), "right": FLIES})
