@@ -22,8 +22,8 @@ TEXTS = {
     Reason.ON_THE_EDGE: "tipping: the centre of pressure is at the sole's edge and the foot turns further than its "
     "bush",
     Reason.OUTSIDE_THE_SOLE: "tipping: the centre of pressure is outside the sole",
-    Reason.NEAR_THE_EDGE: "tipping: the centre of pressure is near the sole's edge, and no flat stance shows if it "
-    "tips",
+    Reason.NEAR_THE_EDGE: "tipping: the centre of pressure is near the sole's edge, where leaning cannot "
+    "be told from flat",
     Reason.BESIDE_TIPPING: "filter's edge: beside a sole that tips",
     Reason.SOLES_APART: "slip: the soles move against each other",
     Reason.SOLE_TURNS: "slip: the sole turns on the floor",

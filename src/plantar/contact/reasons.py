@@ -23,7 +23,7 @@ class Reason(Enum):
     )
     OUTSIDE_THE_SOLE = "tipping: the centre of pressure is outside the sole"
     NEAR_THE_EDGE = (
-        "tipping: the centre of pressure is near the sole's edge, and no flat stance shows if it tips"
+        "tipping: the centre of pressure is near the sole's edge, where leaning cannot be told from flat"
     )
     BESIDE_TIPPING = "filter's edge: beside a sole that tips"
     SOLES_APART = "slip: the soles move against each other"

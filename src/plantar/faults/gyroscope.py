@@ -282,28 +282,33 @@ def rows_to_compare(orientation: Array, acceleration: Array) -> NDArray[np.intp]
     return None if whole.size < FEWEST_COMPARED else spread_out(whole, COMPARED)
 
 
-def _leans(name: str, log: MotionLog, orientation: Array) -> bool:
-    """Whether up by the accelerometer contradicts an orientation (n, 4)."""
+def _up_and_felt(name: str, log: MotionLog, orientation: Array) -> tuple[Array, Array] | None:
+    """Up in the IMU's axes by an orientation (n, 4), and what its accelerometer reads [g], (k, 3) each; None where too
+    few samples hold both."""
     if not log.has_imu(name, "linear_acceleration"):
-        return False
+        return None
     acceleration = log.linear_acceleration(name)
     rows = rows_to_compare(orientation, acceleration)
     if rows is None:
+        return None
+    felt = acceleration[rows] / GRAVITY
+    return rotation_from_quaternion(orientation[rows])[:, 2], felt
+
+
+def _leans(name: str, log: MotionLog, orientation: Array) -> bool:
+    """Whether up by the accelerometer contradicts an orientation (n, 4)."""
+    both = _up_and_felt(name, log, orientation)
+    if both is None:
         return False
-    up = rotation_from_quaternion(orientation[rows])[:, 2]
-    cosines = np.sum(up * acceleration[rows], axis=1) / np.linalg.norm(acceleration[rows], axis=1)
+    up, felt = both
+    cosines = np.sum(up * felt, axis=1) / np.linalg.norm(felt, axis=1)
     return bool(np.median(cosines) < np.cos(UPRIGHT))
 
 
 def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
     """Whether the accelerometer leans against the orientation, or there is no telling: then it may be the wrong one."""
-    if not log.has_imu(name, "linear_acceleration"):
+    both = _up_and_felt(name, log, orientation)
+    if both is None:
         return True
-    acceleration = log.linear_acceleration(name)
-    rows = rows_to_compare(orientation, acceleration)
-    if rows is None:
-        return True
-    up = rotation_from_quaternion(orientation[rows])[:, 2]
-    felt = acceleration[rows] / GRAVITY
-    up, felt = up - up.mean(axis=0), felt - felt.mean(axis=0)
+    up, felt = (each - each.mean(axis=0) for each in both)
     return bool(np.sum(up * felt) < 0.5 * np.sum(up**2))

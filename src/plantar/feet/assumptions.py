@@ -70,7 +70,7 @@ def _delays(ready: PreparedLogs) -> list[Found]:
 
 
 def _bending(ready: PreparedLogs) -> list[Found]:
-    """Of all joints of the legs together, where the moments of the robot's motion are known."""
+    """Of all joints that carry the robot together, where the moments of its motion are known."""
     shown = ready.bending
     return [] if shown.mean is None else [Found("joints of legs and trunk together", shown.mean, shown.std)]
 

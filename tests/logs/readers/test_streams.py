@@ -64,6 +64,15 @@ def test_a_quaternion_that_changes_sign_is_interpolated_the_short_way() -> None:
     np.testing.assert_allclose(np.linalg.norm(seen, axis=1), 1, atol=1e-12)
 
 
+def test_four_columns_that_are_no_orientation_are_no_quaternion() -> None:
+    """A motor's voltages, for one, keep their size."""
+    time = np.arange(16) * 0.1
+    values = {f"motor.{axis}": (place + 2) * np.cos(time) for place, axis in enumerate("wxyz")}
+    columns, _ = resample(Stream("m", time, values), time[:-1] + 0.05)
+    for name, column in values.items():
+        np.testing.assert_allclose(columns[name], (column[:-1] + column[1:]) / 2, atol=1e-12)
+
+
 def test_the_log_is_cut_to_what_all_streams_cover_unless_little_is_left() -> None:
     base = np.arange(0, 10, 0.01)
     joints = stream("j", base, joint__a__position=base)

@@ -24,8 +24,8 @@ UNRESOLVED_IN_STEPS = 0.02
 
 
 def slip_angle_causes(tangent: Tangent) -> list[Cause]:
-    """What an element's angle that is claimed to be known better than that lacks, and what follows it: how the
-    fit's values are others beside a slip angle that is SHAPE_STEP larger and smaller."""
+    """What an element's angle that is claimed to be known better than it can be lacks, and what follows it: how
+    the fit's values are others beside a slip angle that is SHAPE_STEP larger and smaller."""
     fit, shared = tangent.fit, tangent.shared
     if fit.slip_angle is None:
         return []

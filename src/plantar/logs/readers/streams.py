@@ -147,7 +147,7 @@ def _grouped(columns: dict[str, Array]) -> list[list[str]]:
     groups: dict[str, list[str]] = {}
     for name in columns:
         stem, _, axis = name.rpartition(".")
-        groups.setdefault(stem if axis in "wxyz" else name, []).append(name)
+        groups.setdefault(stem if stem.endswith(".orientation") and axis in "wxyz" else name, []).append(name)
     return [
         names for group in groups.values() for names in ([group] if len(group) == 4 else [[n] for n in group])
     ]
