@@ -73,25 +73,23 @@ def play(
     data.qpos[:7], data.qpos[places] = start, targets[0]
     sliding = [_Sliding(model, foot, axis, hinge) for foot, axis, hinge in _sliding_hinges(rubber)]
     bodies = [i for f in rubber for i in (model.body(robot.feet[f].ankle).id, model.body(f"{f}.sole").id)]
-    joints = np.empty((len(targets), len(names)))
-    read = np.empty((len(targets), model.nsensordata))
-    axes, centres = np.empty((len(targets), len(bodies), 9)), np.empty((len(targets), len(bodies), 3))
+    joints = np.zeros((len(targets), len(names)))
+    read = np.zeros((len(targets), model.nsensordata))
+    axes, centres = np.zeros((len(targets), len(bodies), 9)), np.zeros((len(targets), len(bodies), 3))
     for row in range(-round(SETTLE / STEP), len(targets)):
         data.ctrl[:] = targets[max(row, 0)]
         if lead is not None:
             data.ctrl[:] += lead(max(row, 0), data)
-        if row >= 0:
-            joints[row] = data.qpos[places]
         for part in range(PARTS):
             for each in sliding:
                 each.push(data)
+            before = data.qpos[places]
             mujoco.mj_step(model, data)  # sensors and frames are those of the state before the step
-            if row < 0:
-                continue
-            if part == 0:
-                read[row], axes[row], centres[row] = data.sensordata, data.xmat[bodies], data.xpos[bodies]
-            else:  # a blow shorter than a row passes on what it gives
-                read[row, 4:] += (data.sensordata[4:] - read[row, 4:]) / (part + 1)
+            # A blow shorter than a row passes on what it gives; all else is as of the same moment.
+            if row >= 0:
+                now = (before, data.sensordata, data.xmat[bodies], data.xpos[bodies])
+                for kept, found in zip((joints, read, axes, centres), now, strict=True):
+                    kept[row] += (found - kept[row]) / (part + 1)
     turns = axes.reshape(len(targets), len(rubber), 2, 3, 3)
     wrenches, tilt = {}, 0.0
     for number, name in enumerate(rubber):
@@ -103,7 +101,8 @@ def play(
         centre = np.einsum("tji,tj->ti", ankle, centres[:, 2 * number + 1] - centres[:, 2 * number])
         wrenches[name] = _moved(foot, acting[:, 0], acting[:, 1], centre)
     time = STEP * np.arange(len(targets))
-    return Motion(time, joints, read[:, :4], read[:, 4:7], read[:, 7:10], wrenches, tilt)
+    orientation = read[:, :4] / np.linalg.norm(read[:, :4], axis=1, keepdims=True)
+    return Motion(time, joints, orientation, read[:, 4:7], read[:, 7:10], wrenches, tilt)
 
 
 class _Sliding:
