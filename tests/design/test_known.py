@@ -102,11 +102,12 @@ def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
     assert no_element.low == pytest.approx(SPRING * low / WIDER)
 
 
-def test_a_result_without_numbers_is_refused() -> None:
+@pytest.mark.parametrize(
+    "wrong", [{"verdict": "unidentifiable"}, {"value": 0.0}, {"value": None}, {"interval95": None}]
+)
+def test_a_result_without_numbers_is_refused(wrong: dict[str, Any]) -> None:
     result = found()
-    empty = replace(
-        result, parameters=tuple(replace(row, verdict="unidentifiable") for row in result.parameters)
-    )
+    empty = replace(result, parameters=tuple(replace(row, **wrong) for row in result.parameters))
     with pytest.raises(
         DataError,
         match=r"^the result has no stiffness and damping that could be used \(valid: a result with "
