@@ -64,6 +64,17 @@ def test_a_weak_stiffness_widens_the_range_and_is_not_believed() -> None:
 OTHERS: tuple[dict[str, Any], ...] = ({"foot": "right"}, {"axis": "pitch"}, {"name": "damping"})
 
 
+def test_intervals_that_reach_below_zero_say_how_high_and_the_value_how_low() -> None:
+    rows = tuple(
+        replace(row, value=200.0, verdict="weak", interval95=(-10.0, 400.0))
+        if row.name == "stiffness"
+        else row
+        for row in found().parameters
+    )
+    known = Known.of(replace(found(), parameters=rows))
+    assert (known.stiffness, known.low, known.high) == pytest.approx((200.0, 200.0 / WIDER, 400.0 * WIDER))
+
+
 def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
     """Found: 300 in roll, of which an element makes up to 40 %; the sum is sure to 3 %. Pitch shows the element."""
     result, low, share = found(), 0.6 * 300.0, 1.0 - (0.03 / 0.4) ** 2
