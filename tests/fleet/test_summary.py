@@ -175,3 +175,15 @@ def test_the_latest_alarms_come_first_and_outliers_behind_them() -> None:
     told = [alarm("outlier", 9, "a"), alarm("step", 2, "c"), alarm("step", 5, "e"), alarm("step", 5, "d")]
     assert [one.text for one in _advised(told)] == ["d", "e", "c", "a"]
     assert all(one.advice for one in _advised(told))
+
+
+def test_what_other_robots_do_is_no_cause() -> None:
+    """A left foot of one robot and a right foot of another change on one day."""
+    day = date(2026, 1, 5)
+    told = [
+        Alarm(unit, foot, "pitch", "stiffness", "step", day, day, 1.0, None, None, (), unit)
+        for unit, foot in (("a", "left"), ("b", "right"), ("b", "left"))
+    ]
+    advice = {(one.unit, one.foot): one.advice for one in _advised(told)}
+    assert advice["a", "left"].startswith("this axis alone changed")
+    assert advice["b", "left"].startswith("both feet changed")
