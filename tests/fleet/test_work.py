@@ -124,3 +124,16 @@ def test_logs_that_are_not_there_are_told_where_they_should_be(
     ]
     assert [one.entry.name for one in found] == ["log.csv", "log.csv"]
     assert missing == [Failure(places[1], f"{places[1]}: cannot be read")]
+
+
+@pytest.mark.parametrize("rows", [(), ("a row",)])
+def test_a_unit_that_is_there_is_taken_as_it_is(
+    rows: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One without rows has failed, this time too."""
+    monkeypatch.setattr(work, "_fetched", lambda task, folder: ([A], []))
+    monkeypatch.setattr(work, "task_key", lambda task, inputs: f"key of {inputs[0].name}")
+    monkeypatch.setattr(work, "kept", lambda store, key: SimpleNamespace(rows=rows))
+    done = work.compute(SimpleNamespace(store=None))  # type: ignore[arg-type]
+    assert (done.key, done.reused, done.failures, done.failed) == ("key of a.csv", True, (), not rows)
+    assert 0.0 <= done.seconds < 60.0
