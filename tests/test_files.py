@@ -90,7 +90,8 @@ def test_messages_have_a_fixed_order_and_one_line() -> None:
     error = PlantarError("is\nwrong", path="a.csv", column="time", time=1.25, value="x", valid="seconds")
     assert str(error) == "a.csv, column 'time', t = 1.25 s, value 'x': is wrong (valid: seconds)"
     assert str(PlantarError("is wrong")) == "is wrong"
-    assert str(PlantarError("is wrong", value=3.5)) == "value 3.5: is wrong"
+    assert str(PlantarError("is wrong", value=np.float64(3.5))) == "value 3.5: is wrong"
+    assert str(PlantarError("is wrong", time=-123456.75)) == "t = -123456.75 s: is wrong"
     assert str(PlantarError("is wrong", time=1_700_000_004.99)) == "t = 1700000004.99 s: is wrong"
 
 

@@ -15,8 +15,6 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-import numpy as np
-
 SIZE = struct.Struct("<q")
 ALIGNED = 64  # bytes: where an array may begin, as in memory of its own
 PLAIN = (str, bytes, int, float, bool, type(None))
@@ -35,7 +33,7 @@ def held_by(values: Iterable[Any]) -> dict[int, Any]:
             waiting.extend(value.values())
         elif isinstance(value, tuple | list):
             waiting.extend(value)
-        elif not isinstance(value, np.ndarray):
+        else:
             waiting.extend(getattr(value, "__dict__", {}).values())
     return held
 

@@ -148,7 +148,7 @@ def test_validate(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_design(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     seen = Seen("plantar.design.story", "design_motion", monkeypatch)
     told = ("--stiffness", "500", "--damping", "15", "--duration", "40", "--criterion", "D", "--seed", 4)
-    assert run("design", write_robot(tmp_path), "--out", tmp_path / "m.csv", *told) == 1
+    assert run("design", write_robot(tmp_path), "--out", tmp_path / "m.CSV", *told) == 1
     robot, settings, earlier, _ = seen.given
     assert (robot.name, earlier) == ("biped", None)
     assert settings == seen.module.DesignSettings(500.0, 15.0, 40.0, "D", 4)  # type: ignore[attr-defined]

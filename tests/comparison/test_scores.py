@@ -65,7 +65,10 @@ def compared(
     monkeypatch.setattr(room, "_played", play)
     monkeypatch.setattr(room, "beside", lambda robot, plan, kind, one, record: Played(plan, kind))
     robot = SimpleNamespace(
-        joint_names=("a",), feet={"left": None, "right": None}, base="floating", path="biped.yaml"
+        joint_names=("a", "not logged"),
+        feet={"left": None, "right": None},
+        base="floating",
+        path="biped.yaml",
     )
     result = SimpleNamespace(parameters=[SimpleNamespace(foot="left")], joint_compliance={})
     log = SimpleNamespace(name="sway", source="sway.csv", has=lambda name: name == "joint.a.position")
@@ -100,7 +103,8 @@ def test_a_fall_at_the_beginning_leaves_no_score(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.parametrize(
-    ("tips", "flat", "told"), [(6.0, 0.0025, 6.0), (1.9, None, 1.9), (25.0, 0.0025, None)]
+    ("tips", "flat", "told"),
+    [(6.0, 0.0025, 6.0), (1.9, None, 1.9), (20.0, 0.0025, None), (25.0, 0.0025, None)],
 )
 def test_as_long_as_soles_lie_flat(
     tips: float, flat: float | None, told: float | None, monkeypatch: pytest.MonkeyPatch

@@ -67,3 +67,15 @@ def test_a_sensor_that_reads_the_opposite_says_the_same() -> None:
     }
     turned = replace(log, columns={name: -values for name, values in log.columns.items()})
     assert on_an_edge(replace(robot, feet=feet), turned) == on_an_edge(robot, log)
+
+
+@pytest.mark.parametrize("later", [-0.5, 0.5])
+def test_of_two_soles_the_first_that_tips_tells_the_time(later: float) -> None:
+    """The right foot stands on the same places as the left one, half a second earlier or later."""
+    robot, log = hrp2.robot(), standing(FRONT, 0.0)
+    left, right = (wrench_columns(robot.feet[name].wrench.name) for name in ("left", "right"))
+    moved = {
+        mine: np.roll(log.columns[other], int(200 * later)) for mine, other in zip(right, left, strict=True)
+    }
+    found = on_an_edge(robot, replace(log, columns={**log.columns, **moved}))
+    assert found == pytest.approx(on_an_edge(robot, log) + min(later, 0.0))

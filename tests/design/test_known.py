@@ -64,6 +64,17 @@ def test_a_weak_stiffness_widens_the_range_and_is_not_believed() -> None:
 OTHERS: tuple[dict[str, Any], ...] = ({"foot": "right"}, {"axis": "pitch"}, {"name": "damping"})
 
 
+def test_intervals_that_reach_below_zero_say_how_high_and_the_value_how_low() -> None:
+    rows = tuple(
+        replace(row, value=200.0, verdict="weak", interval95=(-10.0, 400.0))
+        if row.name == "stiffness"
+        else row
+        for row in found().parameters
+    )
+    known = Known.of(replace(found(), parameters=rows))
+    assert (known.stiffness, known.low, known.high) == pytest.approx((200.0, 200.0 / WIDER, 400.0 * WIDER))
+
+
 def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
     """Found: 300 in roll, of which an element makes up to 40 %; the sum is sure to 3 %. Pitch shows the element."""
     result, low, share = found(), 0.6 * 300.0, 1.0 - (0.03 / 0.4) ** 2
@@ -102,11 +113,12 @@ def test_what_may_be_an_element_makes_no_spring_stiffer() -> None:
     assert no_element.low == pytest.approx(SPRING * low / WIDER)
 
 
-def test_a_result_without_numbers_is_refused() -> None:
+@pytest.mark.parametrize(
+    "wrong", [{"verdict": "unidentifiable"}, {"value": 0.0}, {"value": None}, {"interval95": None}]
+)
+def test_a_result_without_numbers_is_refused(wrong: dict[str, Any]) -> None:
     result = found()
-    empty = replace(
-        result, parameters=tuple(replace(row, verdict="unidentifiable") for row in result.parameters)
-    )
+    empty = replace(result, parameters=tuple(replace(row, **wrong) for row in result.parameters))
     with pytest.raises(
         DataError,
         match=r"^the result has no stiffness and damping that could be used \(valid: a result with "

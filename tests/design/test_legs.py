@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -10,8 +12,9 @@ import design_samples
 from plantar.contact.balance import planned_wrench
 from plantar.conventions import GRAVITY
 from plantar.design.family import CHANNELS
-from plantar.design.legs import Legs
+from plantar.design.legs import RISE, SPARE, Legs
 from plantar.errors import MotionError
+from plantar.motions.walk import SETTLED
 from plantar.twin.robots import hrp2
 
 
@@ -101,3 +104,23 @@ def test_the_linear_wrench_is_that_of_inverse_dynamics() -> None:
     weight = planned_wrench(hrp2.robot().floating_model, rest[None], still, still)[0]
     assert weight[2] == pytest.approx(mass * GRAVITY, rel=1e-3)
     assert centre[2] - height == pytest.approx(0.02, abs=1e-3)  # of the bush above the floor
+
+
+def test_from_standing_the_robot_can_rise_also_where_its_knees_were_straight() -> None:
+    legs = Legs.of(hrp2.robot(), {})
+    rest, centre, poses = legs.rest
+    root = pin.XYZQUATToSE3(rest[:7]).rotation
+    higher = legs.solve(rest, root, centre * [1.0, 1.0, 1.0 + RISE], poses, SETTLED)
+    knees = [legs.model.joints[legs.model.getJointId(f"{side}LEG_JOINT3")].idx_q for side in "LR"]
+    assert all(angle > SPARE for angle in higher[knees]), "still bent"
+    assert pin.centerOfMass(legs.model, legs.data, higher)[2] == pytest.approx(
+        (1 + RISE) * centre[2], abs=1e-5
+    )
+
+
+def test_the_centre_moves_across_and_along_the_line_through_the_bushes_on_the_level() -> None:
+    """The right bush is 0.3 m ahead, 0.4 m to the right and lower: along is to the left and back."""
+    bushes = {"left": np.array([0.1, 0.2, 0.5]), "right": np.array([0.4, -0.2, 0.3])}
+    poses = {foot: pin.SE3(np.eye(3), place) for foot, place in bushes.items()}
+    directions = Legs.directions.func(SimpleNamespace(rest=(None, None, poses)))  # type: ignore[attr-defined]
+    assert pytest.approx(np.array([[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])) == directions.T

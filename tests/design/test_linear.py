@@ -9,6 +9,8 @@ import pinocchio as pin
 import pytest
 
 import design_samples
+from plantar.conventions import GRAVITY
+from plantar.design.family import CHANNELS
 from plantar.design.linear import internal_forces
 from plantar.design.rubber import remembered
 from plantar.twin.robots import hrp2
@@ -89,3 +91,19 @@ def test_the_pendulum_is_every_link_about_the_middle_of_the_bushes() -> None:
     assert pendulum.inertia == pytest.approx([second[1, 1] + second[2, 2], second[0, 0] + second[2, 2]])
     for foot, pose in poses.items():
         assert pendulum.places[foot] == pytest.approx(pose.translation[:2] - middle[:2], abs=1e-9)
+
+
+def test_what_channels_ask_of_the_ground_is_newtons_law() -> None:
+    """Only the three that move the centre of mass take force; what they hold is the weight, moved aside."""
+    legs, robot = design_samples.legs(), design_samples.linear()
+    mass = robot.pendulum.mass
+    centre = np.zeros((len(CHANNELS), 3))
+    centre[[CHANNELS.index(f"centre.{axis}") for axis in "xyz"]] = legs.directions.T
+    np.testing.assert_allclose(robot.moved[:, :3], mass * centre, atol=2e-3 * mass)
+    weight = mass * GRAVITY * np.array([0.0, 0.0, 1.0])
+    held = np.hstack([np.zeros_like(centre), np.cross(centre, weight)])
+    np.testing.assert_allclose(robot.held, held, atol=2e-3 * mass * GRAVITY)
+    still, quick = np.zeros((len(CHANNELS), 2)), np.zeros((len(CHANNELS), 2))
+    still[0, 1], quick[2, 0] = 0.5, 3.0
+    asked = robot.wrench(still, quick)
+    np.testing.assert_allclose(asked.T, [3.0 * robot.moved[2], 0.5 * robot.held[0]])

@@ -294,11 +294,13 @@ def test_the_right_foot_stands_ahead_by_a_share_of_their_distance(monkeypatch: p
         return Stood(ahead)
 
     monkeypatch.setattr(story, "Legs", SimpleNamespace(of=standing))
-    monkeypatch.setattr(story, "free_swing", lambda *_: 1.0)
+    monkeypatch.setattr(story, "free_swing", lambda robot, rest, arms: 0.5 * arms)
     linear = SimpleNamespace(pendulum=SimpleNamespace(places=places))
     monkeypatch.setattr(story, "LinearRobot", SimpleNamespace(of=lambda _: linear))
     for reach, found in ((1.0, [0.0, 0.05]), (0.01, [0.0])):  # noqa: B007
-        assert [legs.ahead for legs, _ in story._stances(hrp2.robot())] == pytest.approx(found)
+        stances = [legs for legs, _ in story._stances(hrp2.robot())]
+        assert [legs.ahead for legs in stances] == pytest.approx(found)
+        assert [legs.arms for legs in stances] == [0.5] * len(found), "as far as nothing touches"
     assert asked == pytest.approx([0.0, 0.05, 0.0, 0.05]), "a quarter of their distance"
 
 

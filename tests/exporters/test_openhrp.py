@@ -69,3 +69,11 @@ def test_openhrp_says_what_it_cannot_read(text: str, said: str, tmp_path: Path) 
     with pytest.raises(ExportError, match=re.escape(said)) as caught:
         read_customizer(tmp_path / "x.conf")
     assert "\n" not in str(caught.value)
+
+
+def test_of_a_long_entry_its_beginning_is_told(tmp_path: Path) -> None:
+    (tmp_path / "bush.conf").write_text(f"# feet\nbush_config: a,1,2 {'b' * 80},1\n")
+    with pytest.raises(
+        ExportError, match=rf"bush\.conf: line 2: '{'b' * 60}' is no entry of 'bush_config' \(valid: "
+    ):
+        read_customizer(tmp_path / "bush.conf")

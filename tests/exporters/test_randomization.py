@@ -24,7 +24,7 @@ def feet(tmp_path: Path) -> dict[str, Any]:
     made["latency"] = {"wrench_delay": 0.005, "std": 0.002}
     made["diagnosis"] = [
         {"foot": foot, "axis": axis, "name": name,
-         "variance_shares": {"sensor gain": 0.36, "noise": 0.64} if name == "stiffness"
+         "variance_shares": {"sensor gain": 0.36, "delay": 0.16, "noise": 0.48} if name == "stiffness"
          else {"sensor gain": 0.09, "delay": 0.64, "noise": 0.27}}
         for foot, axes in TRUTH.items() for axis in axes for name in ("stiffness", "damping")
     ]  # fmt: skip
@@ -67,6 +67,7 @@ def test_numbers_that_share_a_cause_are_correlated(feet: dict[str, Any], tmp_pat
     assert between("left.pitch.damping", "right.roll.damping") == pytest.approx(0.64), "one clock for both"
     assert between("left.pitch.damping", "left.roll.damping") == pytest.approx(0.64 + 0.09)
     assert between("wrench.delay", "left.pitch.damping") == pytest.approx(0.8)
+    assert between("wrench.delay", "left.pitch.stiffness") == 0, "late sensors are of the dampings alone"
     assert between("left.pitch.offset", "left.pitch.stiffness") == 0
     assert (np.diag(matrix) == 1).all()
     np.testing.assert_array_equal(matrix, matrix.T)
@@ -145,13 +146,14 @@ def test_what_has_no_deviation_is_said(feet: dict[str, Any], tmp_path: Path) -> 
     assert made["parameters"][place["left.pitch.stiffness"]]["std"] == pytest.approx(480 * 0.04 / 3.92)
 
 
-def test_a_range_is_as_wide_as_the_logs_leave_it(feet: dict[str, Any], tmp_path: Path) -> None:
+@pytest.mark.parametrize("value", [9.5, -2.5])
+def test_a_range_is_as_wide_as_the_logs_leave_it(value: float, feet: dict[str, Any], tmp_path: Path) -> None:
     row = feet["parameters"][3]
     assert (row["axis"], row["name"]) == ("pitch", "damping")
-    row.update(value=9.5, std=11.0, interval95=[-12.0, 31.0], verdict="unidentifiable")
+    row.update(value=value, std=11.0, interval95=[-12.0, 31.0], verdict="unidentifiable")
     made, place = ranges(feet, tmp_path)
     found = made["parameters"][place["left.pitch.damping"]]
-    assert (found["mean"], found["std"], found["above"]) == pytest.approx((9.5, 11.0, 0.0))
+    assert (found["mean"], found["std"], found["above"]) == pytest.approx((value, 11.0, 0.0))
 
 
 def test_offsets_hold_what_no_recording_shows(feet: dict[str, Any], tmp_path: Path) -> None:

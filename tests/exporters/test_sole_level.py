@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from export_robots import CENTRE, bush_rotation, write_mjcf
+from export_robots import CENTRE, POLYGON, SOLE_Z, bush_rotation, write_mjcf
 from plantar.errors import ExportError
 from plantar.exporters import export
 from plantar.exporters.mjcf.file import INCLUDE_LIMIT
@@ -81,3 +81,6 @@ def test_a_plate_lies_as_the_bush_under_a_model_without_feet(feet: dict[str, Any
     np.testing.assert_allclose(turn.reshape(3, 3), bush_rotation("left"), atol=1e-6)
     bottom = plate.pos - bush_rotation("left")[:, 2] * plate.size[2]
     assert (bottom - CENTRE) @ bush_rotation("left")[:, 2] == pytest.approx(-0.03, abs=1e-3)
+    corners = (np.column_stack([POLYGON, 4 * [SOLE_Z]]) - CENTRE) @ bush_rotation("left")
+    middle = (corners.min(axis=0) + corners.max(axis=0))[:2] / 2
+    assert ((plate.pos - CENTRE) @ bush_rotation("left"))[:2] == pytest.approx(middle, abs=1e-6)

@@ -326,3 +326,15 @@ def test_a_foot_that_the_robot_file_leaves_out_is_missed(
         f"feet: the robot file names 'left' alone, which carries {60 * carried:.3g} of 60 kg: another foot stands, "
         "too; name it as well, if it has a force sensor: together they show delays and gains"
     )
+
+
+def test_a_joint_that_slides_has_no_limit_in_degrees(robot: RobotModel) -> None:
+    """A leg's slide far beyond its limit, beside an ankle as far beyond its own."""
+    log = record(sway(duration=2.0))
+    far = np.full(len(log), 100.0)
+    assert (
+        robot.model.upperPositionLimit[robot.model.joints[robot.model.getJointId("left_leg_z")].idx_q] < 100.0
+    )
+    assert list(_joints(robot, log.with_columns({"joint.left_leg_z.position": far}))) == []
+    (found,) = _joints(robot, log.with_columns({"joint.left_ankle_pitch.position": far}))
+    assert "left_ankle_pitch" in found.text

@@ -36,8 +36,14 @@ def test_a_step_of_unknown_size_has_no_interval() -> None:
     assert percent_of(np.inf) == np.inf
 
 
+def test_a_step_that_may_be_none_has_no_interval_in_words() -> None:
+    found = alarm(Change("step", 4, 6, 0.05, -0.01, 0.11))
+    assert (found.low, found.high) == pytest.approx((100 * np.expm1(-0.01), 100 * np.expm1(0.11)))
+    assert found.text == ("left pitch stiffness of A-7 went up by 5.1 % on 2024-10-08, seen on 2024-10-10")
+
+
 def test_an_outlier_names_its_recordings() -> None:
-    found = alarm(Change("outlier", 3, 3, 0.2, 0.18, 0.22))
+    found = alarm(Change("outlier", 3, 5, 0.2, 0.18, 0.22))
     assert found.groups == ("g3",)
     assert found.text == "left pitch stiffness of A-7 is 22.1 % above the other days on 2024-10-07"
     assert advice_for(found, []) == (

@@ -37,6 +37,7 @@ def test_rows_of_one_name_are_one_group_in_the_files_order(tmp_path: Path) -> No
 
 def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     text = HEAD + 'one,/r.yaml,"/logs/a, b.csv",fit,2026-05-04T09:30:00Z,u 1\n'
+    text += "two,/r.yaml,/c.csv,fit,,r\n"
     groups = read_manifest(manifest(tmp_path, text))
     assert written(groups) == text
     with_mark = read_manifest(manifest(tmp_path, "\ufeff" + text.replace("\n", "\r\n")))

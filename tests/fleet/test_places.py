@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import fsspec
 import pytest
@@ -153,6 +154,32 @@ def test_a_folder_is_another_where_one_of_its_files_was_written_anew(tmp_path: P
     os.utime(inner / "b", ns=(0, 1_000))
     after = stamp_of(str(tmp_path / "bag"))
     assert (after.size, after != before) == (10, True)
+
+
+@pytest.mark.parametrize("store", ["", "memory:/"])
+def test_in_whatever_order_a_system_lists_its_files(
+    store: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A folder is the same one, and its files come by name."""
+    place = f"{store}{tmp_path}/bag"
+    system = fsspec.filesystem("memory" if store else "file")
+    for number, name in enumerate(("a", "b", "inner/c")):
+        system.makedirs(f"{tmp_path}/bag/inner", exist_ok=True)
+        system.pipe_file(f"{tmp_path}/bag/{name}", b"12345"[number:])
+    for number, name in enumerate(("a", "b", "inner/c") if not store else ()):
+        os.utime(tmp_path / "bag" / name, ns=(0, 1_000 * number))
+    before = stamp_of(place)
+    glob, find = Path.rglob, type(system).find
+    monkeypatch.setattr(Path, "rglob", lambda *given: reversed(list(glob(*given))))
+
+    def backwards(*given: Any, detail: bool = False) -> Any:
+        found = find(*given, detail=True)
+        turned = {name: found[name] for name in reversed(found)}
+        return turned if detail else list(turned)
+
+    monkeypatch.setattr(type(system), "find", backwards)
+    assert stamp_of(place) == before
+    assert Store(place).names("") == ["a", "b", "inner/c"]
 
 
 def test_a_folder_of_a_store_is_as_large_as_its_files_and_another_with_any_of_them() -> None:

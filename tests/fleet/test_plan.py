@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from datetime import UTC, datetime
 from pathlib import Path
+from types import SimpleNamespace
 
 import fsspec
 import pytest
 
 from command_line import refused, run
 from fleet_samples import make_logs, short_log
+from plantar.fleet import plan
 from plantar.fleet.manifest import read_manifest
 from plantar.fleet.plan import PlannedLog, find_logs, groups_of, sources_of, stamp_in
 from plantar.logs.motion_log import MotionLog
@@ -123,3 +125,25 @@ def test_logs_of_a_store_keep_their_urls_and_each_is_named_once(tmp_path: Path) 
     (tmp_path / "c.csv").write_text("time\n")
     patterns = ["memory://plan/*", str(tmp_path / "*.csv"), "memory://plan/a.csv"]
     assert find_logs(patterns) == ("memory:///plan/a.csv", "memory:///plan/b.csv", str(tmp_path / "c.csv"))
+
+
+def test_a_bag_of_ros_2_is_one_log_whatever_lies_in_its_folder(tmp_path: Path) -> None:
+    for name in ("bag/metadata.yaml", "bag/part_0.mcap", "beside/alone.mcap"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    assert find_logs([str(tmp_path / "**" / "*")]) == (
+        str(tmp_path / "bag"),
+        str(tmp_path / "beside" / "alone.mcap"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("first", "time"),
+    [(MAY.timestamp() + 0.75, MAY), (0.0, None), (946684800.0, None), (4102444800.0, None), (4.2, None)],
+)
+def test_a_clock_that_tells_a_date_tells_it_to_the_second(
+    first: float, time: datetime | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither one that starts with the log nor one that was never set, to the first day of 2000 or of 2100."""
+    monkeypatch.setattr(plan, "open_log", lambda place, robot: SimpleNamespace(time=[first, first + 1]))
+    assert plan._first_stamp("a.csv", None) == time  # type: ignore[arg-type]

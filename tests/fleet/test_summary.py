@@ -13,8 +13,17 @@ from fleet_tables import START, STEP_DAY, changing_fleet, failures, results, row
 from plantar.errors import SettingsError
 from plantar.fleet.alarms import Alarm
 from plantar.fleet.series import Series, SeriesKey, by_day, series_of
+from plantar.fleet.statistics.changes import History
 from plantar.fleet.statistics.random_effects import Mean
-from plantar.fleet.summary import FALSE_ALARMS, FleetSummary, _advised, _with_shared, reasons_of, summary_of
+from plantar.fleet.summary import (
+    FALSE_ALARMS,
+    FleetSummary,
+    _advised,
+    _since_step,
+    _with_shared,
+    reasons_of,
+    summary_of,
+)
 from plantar.fleet.tables import GroupRow
 from plantar.report.fleet import fleet_page
 
@@ -121,6 +130,37 @@ def test_only_usable_positive_values_count() -> None:
     assert series.days[-1] == "u-5"
 
 
+def test_series_stand_by_robot_foot_axis_and_stiffness_before_damping() -> None:
+    places = [("b", "left", "pitch"), ("a", "right", "roll"), ("a", "right", "pitch"), ("a", "left", "roll")]
+    rows = [
+        row(*place[:1], 0, *place[1:], 400.0, name=name)
+        for place in places
+        for name in ("damping", "stiffness")
+    ]
+    found = [(one.unit, one.key.foot, one.key.axis, one.key.name) for one in series_of(results(rows))]
+    assert found == [(*place, name) for place in sorted(places) for name in ("stiffness", "damping")]
+
+
+def test_values_without_a_time_stay_behind_a_step() -> None:
+    rows = [row("u", day, "left", "pitch", 400.0 + day) for day in range(4)]
+    (series,) = series_of(results([*rows, row("u", 9, "left", "pitch", 500.0, time=None)]))
+    days = by_day(series)
+    recent = _since_step(series, days, History((), 2, None))
+    assert recent.groups == ("u-2", "u-3", "u-9")
+    assert np.exp(recent.values) == pytest.approx([402.0, 403.0, 500.0])
+    assert recent.stds == pytest.approx([0.01] * 3)
+    assert _since_step(series, days, History((), 0, None)) is series
+
+
+def test_one_robot_alone_is_as_unsure_as_what_its_recordings_share() -> None:
+    """Ten days that agree to 0.1 %, each with a deviation of 5 % that is the same in all."""
+    rows = [row("u", day, "left", "pitch", 400 * 1.001 ** (-1) ** day, std=20.0) for day in range(10)]
+    (effect,) = summary_of(results(rows), failures(), FALSE_ALARMS).effects
+    assert (effect.units, effect.recordings) == (1, 10)
+    assert effect.low == pytest.approx(400 * np.exp(-1.96 * 0.05), rel=2e-3)
+    assert effect.high == pytest.approx(400 * np.exp(1.96 * 0.05), rel=2e-3)
+
+
 def test_failures_are_counted_by_what_they_say() -> None:
     alike = [
         (name, f"/{name}.csv", f"/{name}.csv: t = {time} s: bad") for name, time in (("a", 3.5), ("b", 9))
@@ -175,3 +215,15 @@ def test_the_latest_alarms_come_first_and_outliers_behind_them() -> None:
     told = [alarm("outlier", 9, "a"), alarm("step", 2, "c"), alarm("step", 5, "e"), alarm("step", 5, "d")]
     assert [one.text for one in _advised(told)] == ["d", "e", "c", "a"]
     assert all(one.advice for one in _advised(told))
+
+
+def test_what_other_robots_do_is_no_cause() -> None:
+    """A left foot of one robot and a right foot of another change on one day."""
+    day = date(2026, 1, 5)
+    told = [
+        Alarm(unit, foot, "pitch", "stiffness", "step", day, day, 1.0, None, None, (), unit)
+        for unit, foot in (("a", "left"), ("b", "right"), ("b", "left"))
+    ]
+    advice = {(one.unit, one.foot): one.advice for one in _advised(told)}
+    assert advice["a", "left"].startswith("this axis alone changed")
+    assert advice["b", "left"].startswith("both feet changed")

@@ -13,7 +13,17 @@ from plantar.errors import PlantarError
 from plantar.feet.settings import FeetSettings
 from plantar.fleet.places import Stamp, stamp_of
 from plantar.fleet.run import _known_key
-from plantar.fleet.unit import Failure, Unit, UnitInput, UnitRow, contents_of, read_unit, unit_file, unit_key
+from plantar.fleet.unit import (
+    Failure,
+    Unit,
+    UnitInput,
+    UnitRow,
+    contents_of,
+    read_unit,
+    rows_of_result,
+    unit_file,
+    unit_key,
+)
 from plantar.fleet.work import task_key
 
 LOG = UnitInput("s3://b/x.csv", "x.csv", "fit", "ab" * 32, Stamp(12, "today"))
@@ -72,3 +82,21 @@ def test_a_workers_key_is_the_one_that_the_driver_knows() -> None:
     unseen = UnitInput("s3://b/y.csv", "y.csv", "validate", "cd" * 32, Stamp(1, "now"))
     content = [("fit", "x.csv", "ab" * 32), ("validate", "y.csv", "cd" * 32)]
     assert task_key(task, [LOG, unseen]) == unit_key("robot", content, FeetSettings(cutoff=4.0))
+
+
+def test_each_row_has_the_model_of_its_own_axis() -> None:
+    """An axis without one, such as z, has the result's."""
+    rows = [
+        SimpleNamespace(foot="left", axis=axis, name="stiffness", unit="u", value=1.0, std=0.1, interval95=interval,
+                        verdict="usable")
+        for axis, interval in (("pitch", (0.8, 1.2)), ("roll", None), ("z", (0.5, 2.0)))
+    ]  # fmt: skip
+    models = [
+        SimpleNamespace(foot=foot, axis=axis, model=f"{foot} {axis}")
+        for foot in ("left", "right")
+        for axis in ("pitch", "roll")
+    ]
+    found = rows_of_result(SimpleNamespace(parameters=rows, models=models, model="kelvin_voigt"))  # type: ignore[arg-type]
+    assert [(row.axis, row.low, row.high, row.model) for row in found] == [
+        ("pitch", 0.8, 1.2, "left pitch"), ("roll", None, None, "left roll"), ("z", 0.5, 2.0, "kelvin_voigt"),
+    ]  # fmt: skip

@@ -15,10 +15,11 @@ from biped_robot import FEET, make_robot
 from made_recording import FOOT, PERIOD, made_recording
 from plantar.contact.phases import SINGLE, SUPPORTS
 from plantar.contact.reasons import Reason
-from plantar.inspection import inspect_log
+from plantar.inspection import inspect_log, log_summary
 from plantar.inspection.log_summary import _foot
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
+from plantar.notes import Note
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
 
@@ -123,6 +124,20 @@ def test_a_robot_without_feet(tmp_path: Path) -> None:
     summary = inspect_log(make_robot(tmp_path, feet={}), record(sway(duration=4.0)))
     assert summary.feet == ()
     assert summary.carried is None
+
+
+def test_what_is_said_of_robot_and_log_stands_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also of a robot whose feet cannot be looked at: guesses, its weight, the log's own notes, its joints."""
+    robot, log = make_robot(tmp_path, feet={}), record(sway(duration=4.0))
+    monkeypatch.setattr(log_summary, "guess_notes", lambda name, guesses: [Note("guessed", "info", name)])
+    monkeypatch.setattr(RobotModel, "weight_notes", [Note("weight", "warning", "5 kg less")])
+    columns = {name: values for name, values in log.columns.items() if not name.startswith("joint.neck.")}
+    summary = inspect_log(robot, replace(log, columns=columns, notes=(Note("log", "info", "cut"),)))
+    assert [note.code for note in summary.notes][:3] == ["guessed", "weight", "log"]
+    assert summary.notes[0].text == robot.path.name
+    assert "neck" in summary.notes[3].text
 
 
 def test_real_recordings(shared_data: Path) -> None:

@@ -275,3 +275,12 @@ def test_joints_that_no_foot_needs_are_told_in_short(robot: RobotModel) -> None:
     assert len(lacking) < len(without)
     (note,) = MotionLog("a", time, lacking).joint_notes(robot)
     assert "none lies" not in note.text
+
+
+def test_what_is_no_joint_is_not_told_as_one(robot: RobotModel) -> None:
+    time = np.linspace(0.0, 1.0, 11)
+    columns = {f"joint.{name}.position": time for name in robot.joint_names}
+    others = ("wrench.left.force.z", "imu.chest.orientation.w", "joint.neck.effort")
+    assert MotionLog("a", time, columns | dict.fromkeys(others, time)).joint_notes(robot) == ()
+    (note,) = MotionLog("a", time, columns | {"joint.tail.effort": time, others[0]: time}).joint_notes(robot)
+    assert note.text == "a: recorded, but not in the URDF, not used: tail"

@@ -321,6 +321,10 @@ def test_what_cannot_be_used_is_said_in_a_line(robot: RobotModel) -> None:
         FootEstimator(replace(robot, imu=None))
     with pytest.raises(LogError, match=r"^sway, column 'wrench\.left\.force\.x': is missing"):
         FootEstimator(robot).replay(without(record(sway(duration=2.0)), "wrench.left"))
+    for part in ("angular_velocity", "linear_acceleration"):  # each needed where there is no attitude
+        log = without(without(record(sway(duration=2.0)), "orientation"), part)
+        with pytest.raises(LogError, match=rf"^sway, column 'imu\.chest\.{part}\.x': is missing"):
+            FootEstimator(robot).replay(log)
     estimator, forces = FootEstimator(robot), {foot: np.zeros(6) for foot in robot.feet}
     with pytest.raises(DataError, match=r"^position: an array of shape \(1,\) \(valid: \(11,\)\)$"):
         estimator.step(0.0, [0.0], forces)

@@ -13,7 +13,7 @@ from biped_robot import write_robot
 from estimator_text import untold
 from plantar import _core
 from plantar.errors import DataError
-from plantar.online.estimator import OF_JOINTS, FootEstimator, _elements, _linear, _row, _unsure
+from plantar.online.estimator import OF_JOINTS, FootEstimator, _cutoff, _elements, _linear, _row, _unsure
 from plantar.online.estimator_model import Element, estimator_model
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import DelayEstimate, Parameter
@@ -157,6 +157,15 @@ def test_elements_and_linear_axes_of_a_result() -> None:
     }
     assert _linear(result) == [("left", "pitch")]
     assert (_elements(None), _linear(None)) == ({}, [])
+
+
+@pytest.mark.parametrize(
+    ("used", "taken"), [(2.5, 2.5), (3, 3.0), (0.1, 0.1), (0.05, 5.0), (None, 5.0), ("wide", 5.0)]
+)
+def test_the_cutoff_is_the_results_where_it_names_one_that_filters(used: Any, taken: float) -> None:
+    result: Any = SimpleNamespace(settings={"cutoff": used})
+    assert _cutoff(result) == taken
+    assert _cutoff(SimpleNamespace(settings={})) == _cutoff(None) == 5.0  # type: ignore[arg-type]
 
 
 def test_arrays_of_another_size_are_refused_with_their_names() -> None:

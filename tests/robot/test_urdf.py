@@ -137,3 +137,16 @@ def test_joints_that_follow_others_follow_one_that_follows_none() -> None:
 def test_a_factor_that_is_no_number_is_named() -> None:
     told = refusal("<limit", '<mimic joint="x" multiplier="-1,5"/><limit')
     assert "value '-1,5': multiplier of <mimic> in joint 'ankle' (valid: a number)" in told
+
+
+@pytest.mark.parametrize(("said", "told"), [("", "unreadable"), ("no such axis\nat line 3", "no such axis")])
+def test_of_what_pinocchio_refuses_its_first_words_are_told(
+    said: str, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise RuntimeError(said)
+
+    monkeypatch.setattr("plantar.robot.urdf.pin.buildModelFromXML", refuse)
+    with pytest.raises(RobotError) as caught:
+        parse_urdf(PLAIN, FILE, floating=False)
+    assert str(caught.value) == f"robot.urdf: is not a readable URDF: {told}"

@@ -12,7 +12,7 @@ from plantar.conventions import Array
 from plantar.robot_guess.biped import Limb
 from plantar.robot_guess.feet import Sole
 from plantar.robot_guess.imu import Mount
-from plantar.robot_guess.passive import that_push_back
+from plantar.robot_guess.passive import _squares, that_push_back
 from plantar.robot_guess.seat import Seat
 from plantar.robot_guess.stance import Stance
 
@@ -94,3 +94,43 @@ def test_feet_that_do_not_give_tell_nothing(stance: Stance) -> None:
 def test_without_an_imu_all_are_left() -> None:
     assert that_push_back(OPTIONS, SOLES, swaying(0.02), None, POSES) == OPTIONS
     assert that_push_back(OPTIONS, SOLES, replace(swaying(0.02), felt=None), MOUNT, POSES) == OPTIONS
+
+
+def test_what_a_sensor_reads_is_moved_to_the_ankle() -> None:
+    """From two metres above, where the leaning load turns the foot by more than its rubber holds."""
+    stance, place = swaying(0.02), np.array([0.03, -0.04, 2.0])
+    wrench = stance.wrenches["left"].copy()
+    wrench[:, 3:] -= np.cross(place, wrench[:, :3])
+    above = replace(stance, wrenches=dict.fromkeys(SIDES, wrench))
+    options = [{side: replace(seat, xyz=place) for side, seat in seats.items()} for seats in OPTIONS]
+    (found,) = that_push_back(options, SOLES, above, MOUNT, POSES)
+    assert found is options[1]
+    carried = {side: np.block([[np.eye(3), place[:, None]], [np.zeros(3), 1.0]]) for side in SIDES}
+    (found,) = that_push_back(OPTIONS, SOLES, above, MOUNT, carried)
+    assert found is RIGHT, "by the pose of its link"
+
+
+def test_squares_within_logs_beside_the_load() -> None:
+    """A log of 30 samples that follows its tilt with 2 N·m/rad, one of 20 with 7, each with a zero of its own.
+
+    What the load explains is taken off both, and no stiffness is below zero.
+    """
+    random = np.random.default_rng(0)
+    sizes, logs = (30, 20), np.repeat([4, 9], [30, 20])
+    parts = [np.linalg.qr(random.standard_normal((size, 3)))[0] for size in sizes]
+    parts = [
+        np.linalg.qr(part - part.mean(axis=0))[0] for part in parts
+    ]  # of no mean, square to each other, of size 1
+    tilt, load, rest = (np.concatenate([part[:, k] for part in parts]) for k in range(3))
+    stiffness, zero = np.array([2.0, 7.0])[(logs == 9).astype(int)], np.where(logs == 4, 100.0, -50.0)
+    moment = stiffness * tilt + 3.0 * load + 0.5 * rest + zero
+    signals = np.column_stack([moment, tilt + 0.2 * load, 600.0 + load])
+    rows = np.ones(50, dtype=bool)
+    before, after = _squares(signals, rows, logs)
+    assert before == pytest.approx(2**2 + 7**2 + 2 * 0.5**2)
+    mean = (2.0 + 7.0) / 2
+    assert after == pytest.approx((2 - mean) ** 2 + (7 - mean) ** 2 + 2 * 0.5**2)
+    signals[:, 1] *= -1
+    assert _squares(signals, rows, logs) == pytest.approx((before, before))
+    assert _squares(signals, logs == 4, logs) == pytest.approx((2**2 + 0.5**2, 2**2 + 0.5**2))
+    assert _squares(signals, np.arange(50) < 19, logs) == (0.0, 0.0)

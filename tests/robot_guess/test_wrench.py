@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from plantar.robot_guess.seat import ORIGIN, Seat
 from plantar.robot_guess.stance import Stance
-from plantar.robot_guess.wrench import SOLE_AXES, _turned, moment_arms, seats_by_log
+from plantar.robot_guess.wrench import SOLE_AXES, _turned, _with_signs, moment_arms, seats_by_log
 
 SIDES, SAMPLES = ("left", "right"), 60
 DOWN = np.diag([1.0, -1.0, -1.0])  # the foot's axes in an ankle link whose z points down
@@ -93,3 +94,58 @@ def test_axes_that_are_the_feets_are_seen_from_the_ankle() -> None:
         found = _turned({"left": seat}, {"left": sole}, {"left": pose}, turn)["left"]  # type: ignore[dict-item]
         np.testing.assert_allclose(ankle @ found.rotation, upright @ turn, atol=1e-12)
         assert found.reason == f"at the ankle's origin, in {words}"
+
+
+@pytest.mark.parametrize(("double", "taken"), [(25, 25), (19, SAMPLES)])
+def test_moments_are_those_of_both_feet_where_they_stand_long_enough(double: int, taken: int) -> None:
+    """Of a foot in the air nobody knows what the other one balances; better than nothing where there is no more."""
+    stance = standing(300.0, 3.0)
+    loaded = {"left": np.ones(SAMPLES, dtype=bool), "right": np.arange(SAMPLES) < double}
+    seats = {side: Seat(side, np.zeros(3), DOWN, "", True, 0.0) for side in SIDES}
+    arms = moment_arms(seats, replace(stance, loaded=loaded), {side: np.eye(4) for side in SIDES})
+    assert arms.shape == (taken, 3)
+
+
+@pytest.mark.parametrize("reads", [300.0, -300.0])
+def test_axes_that_messages_give_may_lean_and_guessed_ones_may_not(reads: float) -> None:
+    """By 40 degrees from up; a foot that never carries keeps its sign."""
+    lean = DOWN @ Rotation.from_euler("y", 40, degrees=True).as_matrix()
+    stance = standing(reads)
+    soles = [SimpleNamespace(limb=SimpleNamespace(side=side), upright=DOWN) for side in SIDES]
+    poses = {side: np.eye(4) for side in SIDES}
+    given, guessed = (
+        {side: Seat(side, np.zeros(3), lean, "", guess, 0.0, sign=-1) for side in SIDES}
+        for guess in (False, True)
+    )
+    found = _with_signs(given, soles, stance, poses)  # type: ignore[arg-type]
+    assert found is not None
+    assert {seat.sign for seat in found.values()} == {1 if reads > 0 else -1}
+    assert _with_signs(guessed, soles, stance, poses) is None  # type: ignore[arg-type]
+    air = replace(stance, loaded={**stance.loaded, "left": np.zeros(SAMPLES, dtype=bool)})
+    found = _with_signs(given, soles, air, poses)  # type: ignore[arg-type]
+    assert found is not None
+    assert (found["left"].sign, found["right"].sign) == (-1, 1 if reads > 0 else -1)
+
+
+@pytest.mark.parametrize(("sway", "turned"), [(0.02, True), (0.008, False)])
+def test_other_axes_are_believed_where_they_halve_a_change_of_a_centimetre(sway: float, turned: bool) -> None:
+    """The centre of mass sways forward; torques about y hold it, which these sensors call x."""
+    load, wave = 300.0, sway * np.sin(2 * np.pi * np.arange(SAMPLES) / SAMPLES)
+    wrench = np.zeros((SAMPLES, 6))
+    wrench[:, 2], wrench[:, 3] = load, -load * wave
+    stance = replace(
+        standing(load),
+        rotations=dict.fromkeys(SIDES, np.tile(np.eye(3), (SAMPLES, 1, 1))),
+        centre=np.column_stack([wave, 0 * wave, 0 * wave]),
+        wrenches=dict.fromkeys(SIDES, wrench),
+    )
+    seats = {
+        side: Seat(side, np.zeros(3), np.eye(3), f"at the ankle's origin, in {ORIGIN}", True, 0.0)
+        for side in SIDES
+    }
+    soles = [SimpleNamespace(limb=SimpleNamespace(side=side), upright=np.eye(3)) for side in SIDES]
+    found, left = seats_by_log(seats, soles, stance, None, dict.fromkeys(SIDES, np.eye(4)))  # type: ignore[arg-type]
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    for side in SIDES:
+        np.testing.assert_allclose(found[side].rotation, quarter if turned else np.eye(3), atol=1e-12)
+    assert (left < 1e-12) is turned

@@ -11,7 +11,7 @@ from example_robots import TALOS
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.robot_guess import guess_robot_file
-from plantar.robot_guess.zeros import without_zeros
+from plantar.robot_guess.zeros import _load, without_zeros
 from standing_robot import talos_sways
 
 SENSORS = {"left": "left", "right": "right"}
@@ -76,3 +76,28 @@ def test_the_largest_zero_of_all_logs_is_told() -> None:
         np.testing.assert_allclose(
             log.column("wrench.left.force.z"), np.where(stands, WEIGHT, 0.0), atol=1e-9
         )
+
+
+def test_a_zero_that_drifts_is_taken_off_where_it_was() -> None:
+    """By half a newton a second: what is told is its middle."""
+    time = np.arange(0, 60.0, 0.02)
+    stands, zero = np.mod(time, 2.0) < 1.0, 20.0 + 0.5 * (time - 30.0)
+    columns = {name: np.zeros(time.size) for name in wrench_columns("left")}
+    columns["wrench.left.force.x"] = zero
+    columns["wrench.left.force.z"] = np.where(stands, WEIGHT, 0.0)
+    (tared,), (remark,) = without_zeros([MotionLog("walk", time, columns)], {"left": "left"}, WEIGHT)
+    assert tared.column("wrench.left.force.x") == pytest.approx(np.zeros(time.size), abs=0.1)
+    assert "left 20 N" in remark.text
+
+
+def test_the_load_is_along_the_usual_force_under_load() -> None:
+    """Of six samples three carry more than half of the largest: their middle decides."""
+    force = np.array(
+        [[0, 0, 1], [9, 0, 0], [0, -60, 80], [0, -66, 88], [0, -120, 50], [np.nan, 0, 0]], dtype=float
+    )
+    wrench = np.hstack([force, np.full_like(force, 7.0)])
+    usual = np.median(force[2:5], axis=0)
+    assert _load(wrench)[:5] == pytest.approx(force[:5] @ usual / np.linalg.norm(usual))
+    assert np.isnan(_load(wrench)[5])
+    assert _load(np.full((3, 6), np.nan)).shape == (3,)
+    assert _load(np.zeros((3, 6))).tolist() == [0.0, 0.0, 0.0]

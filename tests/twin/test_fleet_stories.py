@@ -51,7 +51,13 @@ def test_logs_have_every_second_sample_no_efforts_and_the_gain_of_the_right_sens
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     time = np.arange(6) / 200.0
-    names = ("wrench.right.force.z", "wrench.left.force.z", "joint.a.position", "joint.a.effort")
+    names = (
+        "wrench.right.force.z",
+        "wrench.right.torque.x",
+        "wrench.left.force.z",
+        "joint.a.position",
+        "joint.a.effort",
+    )
     columns = dict.fromkeys(names, 1.0 + time)
     softened: list[dict[str, float]] = []
     asked: list[float] = []
@@ -94,8 +100,9 @@ def test_logs_have_every_second_sample_no_efforts_and_the_gain_of_the_right_sens
         np.testing.assert_array_equal(log.time, time[::2])
         gain = told[n // 2].gain[n % 2]
         np.testing.assert_allclose(log.columns["wrench.right.force.z"], gain * (1 + time[::2]))
+        np.testing.assert_allclose(log.columns["wrench.right.torque.x"], gain * (1 + time[::2]))
         np.testing.assert_array_equal(log.columns["wrench.left.force.z"], 1 + time[::2])
-        assert list(log.columns) == list(columns)[:3]
+        assert list(log.columns) == list(columns)[:4]
         assert softened[n] == {foot: own[n % 2] for foot, own in told[n // 2].shares.items()}
     truth = list(csv.DictReader((tmp_path / "truth.csv").open()))
     assert len(truth) == 6 * 4

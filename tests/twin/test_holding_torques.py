@@ -58,3 +58,14 @@ def test_weight_less_what_the_ground_carries(robot: RobotModel, sign: float) -> 
         carried = (axes @ FORCE) @ (ends[0][1] - ends[1][1]) / (2 * STEP)
         assert held[0, joint] == pytest.approx(lifted - carried, abs=1e-3), robot.joint_names[joint]
     assert np.abs(held[0]).max() > 10.0
+
+
+def test_the_last_sample_is_looked_at_wherever_it_falls(robot: RobotModel) -> None:
+    """Of 95 samples, each twentieth and the last; between two of them a straight line."""
+    log = record(sway(duration=1.0)).select(slice(0, 95))
+    held = holding_torques(robot, log)
+    for row in (20, 80, 94):
+        alone = holding_torques(robot, log.select(slice(row - 1, row + 1)))
+        np.testing.assert_allclose(held[row], alone[1], atol=1e-9)
+    np.testing.assert_allclose(held[87], (held[80] + held[94]) / 2, atol=1e-9)
+    assert np.abs(held[94] - held[80]).max() > 1e-3

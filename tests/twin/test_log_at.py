@@ -37,7 +37,9 @@ def test_a_short_gap_is_a_straight_line(first: int, last: int) -> None:
 def test_a_long_gap_is_said_with_its_time(first: int, last: int, when: float) -> None:
     log = with_gap(first, last)
     found = read(log)
-    beside = log_at(log, TIME).columns["joint.hip.position"]
+    whole = log_at(log, TIME)
+    np.testing.assert_allclose(whole.time, np.arange(101) / 100, atol=1e-12, err_msg="from 0 on")
+    beside = whole.columns["joint.hip.position"]
     np.testing.assert_allclose(beside, np.arange(101) / 100, atol=1e-12, err_msg="other columns stay")
     with pytest.raises(DataError, match=f"t = {when:g}.*the joints have a gap"):
         check_whole(log, "the joints", np.arange(201) / 200, found)

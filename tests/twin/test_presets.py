@@ -10,7 +10,7 @@ import pytest
 
 from plantar.conventions import GRAVITY
 from plantar.robot.model import RobotModel
-from plantar.twin.presets import gravitational_stiffness, sized_for
+from plantar.twin.presets import SENSORS, Preset, gravitational_stiffness, sized_for
 from plantar.twin.robots import hrp2
 
 
@@ -38,3 +38,20 @@ def test_a_robot_is_sized_by_its_share_of_hrp2(robot: RobotModel) -> None:
     assert sized_for(robot) == round(
         gravitational_stiffness(robot) / gravitational_stiffness(hrp2.robot()), 3
     )
+
+
+def test_recordings_of_one_robot_differ_by_one_share() -> None:
+    """Drawn once for all motions of a seed, another for another seed; each motion's own draw is times that."""
+    one, drawn = (Preset("a", SENSORS, between=between) for between in ((1.0, 1.0), (0.003, 0.01)))
+    shares = {
+        seed: [
+            drawn.stiffening(seed, motion) / one.stiffening(seed, motion)
+            for motion in ("Tilt1", "Squat", "walk")
+        ]
+        for seed in (0, 1, 2)
+    }
+    for own in shares.values():
+        assert own == pytest.approx([own[0]] * 3)
+        assert 0.003 <= own[0] <= 0.01
+    assert len({round(own[0], 9) for own in shares.values()}) == 3
+    assert one.stiffening(0, "Tilt1") != one.stiffening(0, "Squat") != one.stiffening(1, "Squat")

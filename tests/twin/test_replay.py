@@ -67,6 +67,18 @@ def test_a_missing_number_is_named() -> None:
     less = tuple(row for row in result.parameters if (row.axis, row.name) != ("roll", "damping"))
     with pytest.raises(PlantarError, match=r"^the result has no roll_damping of the left foot$"):
         feet_of(replace(result, parameters=less))
+    with pytest.raises(PlantarError, match=r"^the result has no roll_damping of the left foot$"):
+        feet_of(replace(result, parameters=tuple(row for row in result.parameters if row.axis == "pitch")))
+
+
+def test_a_damping_below_zero_is_played_as_it_is() -> None:
+    """Only a vertical stiffness below zero is none: its axis may be left to the twin."""
+    result = found("kelvin_voigt")
+    below = tuple(
+        replace(row, value=-2.0) if (row.axis, row.name) == ("roll", "damping") else row
+        for row in result.parameters
+    )
+    assert feet_of(replace(result, parameters=below))["left"].roll_damping == -2.0
 
 
 def test_a_servo_that_gives_is_told_to_go_further(robot: RobotModel) -> None:

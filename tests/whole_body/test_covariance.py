@@ -11,7 +11,8 @@ import pytest
 import small_biped
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.whole_body.covariance import uncertainty, uncertainty_from
+from plantar.whole_body import covariance as room
+from plantar.whole_body.covariance import score_covariance, uncertainty, uncertainty_from
 from plantar.whole_body.dataset import Body, prepare_whole
 from plantar.whole_body.equations import Calibration, inertial_samples
 from plantar.whole_body.folds import Samples
@@ -126,3 +127,61 @@ def test_scatter_of_the_scores_goes_through_the_inverse_twice() -> None:
     assert trust.base == pytest.approx([5.0 / (4 + 1), 5.0 / (16 + 1)]), (
         "deviations of sums add up in squares"
     )
+
+
+class Instants(list[float]):
+    """A motion of which nothing is known but which samples it has."""
+
+    def select(self, rows: slice) -> Instants:
+        return Instants(self[rows])
+
+
+def test_scores_are_weighted_columns_times_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A row of the base and one of a joint that has two terms of its own; three samples, two at a time."""
+    monkeypatch.setattr(room, "CHUNK", 2)
+    monkeypatch.setattr(room, "cosine_covariance", lambda scores, seconds: (scores, seconds))
+    base = Grouping(2)
+    base.masks = "masks"  # type: ignore[attr-defined]
+    columns = {
+        0: np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]),
+        7: np.array([[10.0, 20.0, 30.0], [0.0, 1.0, -1.0]]),
+    }
+
+    def regressor(motion: Instants, masks: str) -> dict[int, np.ndarray]:
+        assert masks == "masks"
+        return {row: values[:, [int(time) for time in motion]] for row, values in columns.items()}
+
+    fit = SimpleNamespace(
+        base=base,
+        extras={7: np.zeros(2)},
+        weights={0: 2.0, 7: 0.5},
+        equation=SimpleNamespace(regressor=regressor),
+        predict=lambda samples: {0: np.array([1.0, 1.0, 1.0]), 7: np.array([0.0, 4.0, 0.0])},
+    )
+    measured = {
+        0: np.array([2.0, 0.0, 4.0]),
+        7: np.array([8.0, 0.0, 4.0]),
+    }  # misses by 1, -1, 3 and by 8, -4, 4
+    own = {7: (np.array([1.0, 1.0, 1.0]), np.array([-2.0, 3.0, 5.0]))}
+    samples = Samples("a", np.arange(3.0), Instants([0.0, 1.0, 2.0]), measured, own, 0.25)  # type: ignore[arg-type]
+    scores, seconds = score_covariance(fit, samples)  # type: ignore[arg-type]
+    assert seconds == 0.75  # type: ignore[comparison-overlap]
+    assert scores.tolist() == [
+        [4 * 1.0 + 10 * 2.0, 4 * 4.0 + 0.0, 2.0, -2 * 2.0],
+        [-4 * 2.0 - 20 * 1.0, -4 * 5.0 - 1.0, -1.0, 3 * -1.0],
+        [12 * 3.0 + 30 * 1.0, 12 * 6.0 - 1.0, 1.0, 5 * 1.0],
+    ]
+
+
+def test_each_row_has_its_own_deviations() -> None:
+    """Two parameters, then terms of two rows: one of row 9, two of row 7, in the order in which the fit has them."""
+    fit = made_fit([1e3, 1e3], np.zeros(2), np.inf)
+    fit = SimpleNamespace(**vars(fit))  # type: ignore[assignment]
+    fit.extras = {9: np.zeros(1), 7: np.zeros(2)}  # type: ignore[misc]
+    fit.triangle = np.diag([1e3, 1e3, 2.0, 4.0, 8.0, 0.0])[:5]  # type: ignore[misc]
+    scatter = np.diag([0.0, 0.0, 1.0, 36.0, 16.0])
+    trust = uncertainty_from(fit, [(scatter, 3.0)])
+    assert list(trust.extras) == [9, 7]
+    assert trust.extras[9] == pytest.approx([1 / 4])
+    assert trust.extras[7] == pytest.approx([6 / 16, 4 / 64])
+    assert trust.base == pytest.approx([0.0, 0.0])

@@ -26,7 +26,10 @@ from plantar.whole_body.regularised_result import (
     inertial_rows,
 )
 
-HELD_OUT = tuple(HeldOutError(10.0**power, np.full(6, (1.0 + power) ** 2)) for power in (0, 1, 2))
+# Of folds that are unlike: the root of their mean is 1, 2 and 3.
+HELD_OUT = tuple(
+    HeldOutError(10.0**power, np.array([0.2, 1.8, 1.0]) * (1.0 + power) ** 2) for power in (0, 1, 2)
+)
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import pytest
 import small_biped
 from plantar.errors import DataError, RobotError
 from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.whole_body.inertia import identify_inertia
 from plantar.whole_body.settings import DynamicsSettings
@@ -45,7 +46,10 @@ def test_no_log_and_two_of_one_name_are_refused(robot: RobotModel, logs: list[Mo
 def test_each_log_has_its_role_and_its_notes(robot: RobotModel, logs: list[MotionLog]) -> None:
     sides = ("left", "right")
     flipped = {f"wrench.{side}.torque.x": -logs[0].column(f"wrench.{side}.torque.x") for side in sides}
-    found = prepared(robot, [logs[0].with_columns(flipped)], logs[1:])
+    said = [Note(name, "info", f"of {name}") for name in ("fitted", "scored")]
+    first, second = (replace(log, notes=(note,)) for log, note in zip(logs, said, strict=True))
+    found = prepared(robot, [first.with_columns(flipped)], [second])
+    assert [note for note in found.notes if note in said] == said
     assert [(row.path, row.role) for row in found.inputs] == [("one", "fit"), ("two", "validate")]
     assert (len(found.fitted), len(found.unseen)) == (1, 1)
     assert found.body.equation.floating

@@ -115,6 +115,6 @@ def by_day(series: Series) -> Days:
     return Days(days, values, counts, tuple(map(tuple, groups)))
 
 
-def _order(series: Series) -> tuple[str, ...]:
+def _order(series: Series) -> tuple[str, str, str, int]:
     key = series.key
-    return series.unit, key.foot, key.axis, key.name[::-1]  # stiffness before damping
+    return series.unit, key.foot, key.axis, USED.index(key.name)

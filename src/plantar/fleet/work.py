@@ -136,9 +136,7 @@ def _fitted(task: Task, key: str, fetched: Sequence[_Fetched]) -> tuple[tuple[Un
     """
     robot = robot_model(task.robot)
     logs, failures = _opened(robot, fetched, task.memory)
-    result = None
-    if any(one.log.role == "fit" for one, _ in logs):
-        result = _identified(robot, logs, task.settings, failures)
+    result = _identified(robot, logs, task.settings, failures)
     if result is None:
         return (), failures
     content = dump_json(result.to_dict())

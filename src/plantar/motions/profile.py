@@ -32,6 +32,6 @@ def bows(time: Array, start: float, period: float, count: int) -> Array:
 
 def sweep(time: Array, start: float, end: float, low: float, high: float) -> Array:
     """A sine whose frequency grows linearly from `low` to `high` [Hz] between `start` and `end`, eased."""
-    t = np.clip(time - start, 0.0, end - start)
+    t = time - start
     phase = 2 * np.pi * (low * t + (high - low) * t**2 / (2 * (end - start)))
     return np.asarray(np.sin(phase) * window(time, start, end, 2.0))

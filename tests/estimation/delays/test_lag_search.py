@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.estimation.delays.lag_search import LagGrid, _windows, search_lags
+from plantar.estimation.delays.lag_search import LagGrid, _beside, _windows, search_lags
 from plantar.signals.filters import low_pass
 
 PERIOD, SAMPLES, STEPS = 0.05, 800, 5
@@ -57,6 +57,23 @@ def test_a_push_neither_hides_the_lag_nor_passes_for_one() -> None:
     assert found.missed[1] < 0.01
     assert found.power[0] < 0.2, "the hand's torques are not predicted"
     assert 0.8 < found.power[1] < 1.25
+
+
+def test_a_narrow_grid_draws_what_is_beside_it_to_none() -> None:
+    """By Bayes' rule: as far as the grid's steps let it go, and in the direction in which the windows pull."""
+    grids, places = [grid((1, 0, 0)), grid((1, 0, 0), seed=2)], np.array([STEPS, STEPS, STEPS])
+    steps = PERIOD * np.array([1.0, 2.0, 0.5])
+    free = _beside(grids, places, 1e6 * steps)
+    assert free[0] > 0.2 * PERIOD, "the first foot is late by a step"
+    pulls = []
+    for share in (1e-4, 1e-5):
+        drawn = _beside(grids, places, share * steps)
+        assert (np.abs(drawn) < 1e-3 * PERIOD).all()
+        pulls.append(12 * drawn / (share * steps) ** 2)
+    np.testing.assert_allclose(*pulls, rtol=1e-3)
+    assert pulls[0] @ free > 0, "towards what it would be"
+    between = _beside(grids, places, 0.1 * steps)
+    assert 0 < between[0] < free[0]
 
 
 def test_lags_beyond_the_grid_are_missed_and_no_lag_is_better_than_others() -> None:

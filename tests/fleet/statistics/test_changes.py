@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from plantar.conventions import MONTH
-from plantar.fleet.statistics.changes import Change, _is_outlier, history_of
+from plantar.fleet.statistics.changes import Change, _is_outlier, _slow_change, history_of
 from plantar.fleet.statistics.control_chart import Limits
 
 DAYS = np.arange(365.0)
@@ -62,6 +62,21 @@ def test_a_slow_drift_that_the_chart_calls_steps_is_one_trend_of_its_size() -> N
     (change,) = history_of(DAYS, values, np.ones(365), RATE).changes
     assert change.kind == "trend"
     assert change.size == pytest.approx(0.02, rel=0.1)
+
+
+def test_steps_of_both_directions_are_no_slow_change() -> None:
+    """A line that grows by 0.01 a day from day 20 on, called levels: one trend, but not with a day far below in it."""
+    days, even = np.arange(200.0), np.tile([0.05, -0.05], 100)
+    grows = even + 0.01 * np.maximum(days - 20.0, 0.0)
+    runs = [(80, 85), (140, 144)], [(80, 85), (81, 86), (140, 144)]
+    change = _slow_change(runs[0], slice(0, 200), days, grows, np.ones(200))
+    assert change is not None
+    assert (change.kind, change.seen) == ("trend", 85)
+    assert change.first == pytest.approx(20, abs=8)
+    assert change.size == pytest.approx(0.01 * MONTH, rel=0.1)
+    grows[80] -= 1.0
+    assert _slow_change(runs[0], slice(0, 200), days, grows, np.ones(200)) is not None
+    assert _slow_change(runs[1], slice(0, 200), days, grows, np.ones(200)) is None
 
 
 def test_the_trend_is_of_the_days_behind_the_step() -> None:
