@@ -44,6 +44,9 @@ def read_csv(
     header = told_apart([name.strip() for name in found.names] if strict else found.names)
     names = choose(header)
     limit.numbers(found.rows, len(names))
+    if found.units:
+        text = f"{path.name}: the line below the names holds no number and is not read, as units: '{found.units[:40]}'"
+        notes.append(Note("units_line", "info", text))
     if found.cut is not None:
         notes.append(Note("file_cut", "warning", f"{path.name} {found.cut}"))
     place = {name: row for row, name in enumerate(names)}
