@@ -107,12 +107,14 @@ def test_an_added_term_is_four_deviations_from_none(deviations: float, adds: boo
 def test_a_rejected_model_is_told_of_from_three_tenths_on(error: float, told: bool, fit: ModelFit) -> None:
     even = np.linspace(0.9, 1.1, 8)
     scores = [score(KelvinVoigt(), 1.0, fit), score(Elastoplastic(), error, fit, "is not passive")]
-    found = _caution(scores, [even, error**2 * even], 0, 0.1)
+    found = _caution(scores, [even, error**2 * even], 0, 0.1, whole=True)
     assert (found is not None) == told
     assert found is None or found.startswith(
         "elastoplastic predicts held-out motion better (0.69 against 1 rms) but is not passive; stiffness"
     )
-    small = _caution([scores[0], replace(scores[1], refused=None)], [even, error**2 * even], 0, 0.5)
+    small = _caution(
+        [scores[0], replace(scores[1], refused=None)], [even, error**2 * even], 0, 0.5, whole=True
+    )
     assert small is None or "but by too little for steps as short as these" in small
 
 
@@ -135,7 +137,7 @@ def test_rubber_that_yields_more_slowly_than_motions_show_is_told_of_from_a_tent
     )  # fmt: skip
     even = np.linspace(0.9, 1.1, 8)
     scores = [score(KelvinVoigt(), 1.0, fit), ModelScore(solid.model, error, solid, "too slow")]
-    found = _caution(scores, [even, error**2 * even], 0, 0.1)
+    found = _caution(scores, [even, error**2 * even], 0, 0.1, whole=True)
     assert (found is not None) == told
     assert found is None or found.startswith(
         "rubber that goes on yielding for 4 s or longer predicts held-out"

@@ -152,7 +152,7 @@ def choose_model(
         held_out=held_out,
         reason=_reason(chosen, scores[linear], held_out),
         reach=reach(motions),
-        caution=_caution(scores, errors, winner, least_gain),
+        caution=_caution(scores, errors, winner, least_gain, whole=whole),
     )
 
 
@@ -218,17 +218,16 @@ def _clear(
 
 
 def _caution(
-    scores: Sequence[ModelScore], errors: Sequence[Array], winner: int, least_gain: float
+    scores: Sequence[ModelScore], errors: Sequence[Array], winner: int, least_gain: float, *, whole: bool
 ) -> str | None:
     """Whether a model that was not chosen predicts clearly better: then the bush is not as the chosen model says.
 
     It was refused, or in short stances, whose states are free, gains less than the `least_gain` asked for there. Of one
-    that was refused for its slowness alone a smaller gain tells, as of one that is chosen.
+    that was refused for its slowness alone a smaller gain tells, as of one that is chosen, where `whole` recordings are
+    held out: within one the attitude's wander gains as much.
     """
-    asked = [
-        min(least_gain, TELLING_GAIN) if _creeps(score.fit, scores[winner].fit) else TELLING_GAIN
-        for score in scores
-    ]
+    slow = [whole and _creeps(score.fit, scores[winner].fit) for score in scores]
+    asked = [min(least_gain, TELLING_GAIN) if one else TELLING_GAIN for one in slow]
     better = [
         place
         for place, score in enumerate(scores)
@@ -237,8 +236,9 @@ def _caution(
     ]
     if not better:
         return None
-    best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
-    if _creeps(best.fit, scores[winner].fit):
+    place = min(better, key=lambda place: scores[place].held_out_rms)
+    best = scores[place]
+    if slow[place]:
         return (
             f"rubber that goes on yielding for {best.fit.value(RELAXATION_TIME):.2g} s or longer predicts held-out "
             f"motion better ({best.held_out_rms:.3g} against {scores[winner].held_out_rms:.3g} rms); under a load that "
@@ -256,8 +256,8 @@ def _creeps(fit: ModelFit, chosen: ModelFit) -> bool:
     """Whether a passive bush of `fit` relaxes more slowly than these motions can show, and by so much that its spring
     is softer than the chosen one by more than other errors make it.
 
-    Of robots on rubber without creep (30 axes of eight machines) such fits predict by 11 % better at most, and those
-    that gain so much are 3 % softer, which is the attitude's wander.
+    Of robots on rubber without creep such fits predict other recordings by 11 % better at most, and those that gain so
+    much are 3 % softer, which is the attitude's wander.
     """
     return (
         isinstance(fit.model, StandardLinearSolid)
