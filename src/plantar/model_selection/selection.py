@@ -27,6 +27,7 @@ LEAST_GAIN = 0.10  # of the held-out rms error
 # Of the held-out rms error: a model that cannot be identified but is this much better is mentioned.
 TELLING_GAIN = 0.3
 TOLD = 4.0  # standard deviations from zero, of a term that a model adds to a simpler one
+CREEPS = "rubber that goes on yielding"
 LEAST_CREEP = 0.08  # of the stiffness, that rubber which yields slowly takes off it
 # Times the best model's squares, at its best candidate: such a model is not refined. Nor is one, where only a large
 # gain is clear, whose best candidate gains less than is mentioned: candidates lack little of what such elements show.
@@ -240,7 +241,7 @@ def _caution(
     best = scores[place]
     if slow[place]:
         return (
-            f"rubber that goes on yielding for {best.fit.value(RELAXATION_TIME):.2g} s or longer predicts held-out "
+            f"{CREEPS} for {best.fit.value(RELAXATION_TIME):.2g} s or longer predicts held-out "
             f"motion better ({best.held_out_rms:.3g} against {scores[winner].held_out_rms:.3g} rms); under a load that "
             "stays the stiffness is smaller (record slow motions, each lean held for half a minute)"
         )
