@@ -46,8 +46,8 @@ def test_play_is_told_with_its_size(play: float) -> None:
     assert float(size) == pytest.approx(1e3 * play, rel=0.25)
     assert rest == (
         "where the torque changes its sign: play in the bush, or between an encoder and the foot, which makes the "
-        "spring look softer (valid: a bush and gears without play, or encoders on the foot's side; or keep the torque on "
-        "one side of zero)"
+        "spring look softer (valid: a bush and gears without play, or encoders on the foot's side; or keep the torque "
+        "on one side of zero)"
     )
 
 
