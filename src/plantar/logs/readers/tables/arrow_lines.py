@@ -82,7 +82,8 @@ class ArrowLines:
                 reason = (
                     f"a row has {row.actual_columns} values where the header has {row.expected_columns}: "
                 )
-                raise LogError(reason + row.text[:40] + "...", path=self.path) from error
+                valid = "one line of column names, then as many values in each row"
+                raise LogError(f"{reason}{row.text[:40]}...", path=self.path, valid=valid) from error
             raise LogError(f"is not a readable CSV: {reason}", path=self.path) from error
 
     def _invalid(self, row: pa_csv.InvalidRow) -> str:

@@ -40,8 +40,7 @@ def read_csv(
     """
     found = survey(path, limit)
     limit.columns(len(found.names))
-    # A column map says names as the file has them, blanks included.
-    header = told_apart([name.strip() for name in found.names] if strict else found.names)
+    header = told_apart([name.strip() for name in found.names])
     names = choose(header)
     limit.numbers(found.rows, len(names))
     if found.units:
