@@ -111,10 +111,8 @@ OTHER = Play(jump=0.002, deviations=40.0, zero=0.0, values=np.zeros(2), squares=
 
 
 @pytest.mark.parametrize(("play", "told"), [(0.0, False), (0.0003, False), (0.0008, True)])
-def test_an_axis_with_some_of_the_other_s_play_is_told_what_as_much_would_make(
-    play: float, told: bool
-) -> None:
-    """Alone it shows too little to be told of. A fourth of the other axis' is asked for."""
+def test_an_axis_that_does_not_exclude_the_other_s_play_is_told_of_it(play: float, told: bool) -> None:
+    """Alone it shows too little to be told of. It excludes what is four times as much as it shows."""
     made = [
         replace(one, bushes={FOOT: replace(one.bushes[FOOT], torque=one.bushes[FOOT].torque + extra)})
         for seed, one in enumerate(swaying(PLAIN, play))
@@ -143,3 +141,16 @@ def test_play_about_both_axes_is_the_bush_s_and_told_within_intervals_too() -> N
     tangent = Tangent.of(fit, recordings, False)
     (note,) = play_notes(tangent, unsure, OTHER)
     assert note.text.startswith(f"{FOOT} pitch: the angle jumps by 4.2 mrad")
+
+
+def test_noise_of_the_torque_is_no_play() -> None:
+    """It makes the torque's own sign, most at the ends of its range, where a jump of the other sense fits it best."""
+    made = [
+        replace(one, bushes={FOOT: replace(one.bushes[FOOT], torque=one.bushes[FOOT].torque + extra)})
+        for seed, one in enumerate(swaying(PLAIN, 0.0008))
+        for extra in [0.5 * np.random.default_rng(seed + 5).standard_normal((COUNT, 1))]
+    ]
+    fit = fit_axis(made, FOOT, "pitch", FeetSettings(model="kelvin_voigt"))
+    assert fit is not None
+    found = find_play(Tangent.of(fit, made, False))
+    assert found is None or found.jump > 0
