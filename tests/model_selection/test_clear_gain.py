@@ -71,7 +71,7 @@ def test_a_refused_model_is_told_of_where_it_is_far_better(fit: ModelFit) -> Non
     even = 10.0 + np.linspace(-1.0, 1.0, 8)
     for share, told in ((0.8, False), (0.6, True)):
         scores, errors = contest(fit, even, share**2 * even, refused="not told from nothing")
-        said = _caution(scores, errors, 0, LEAST_GAIN)
+        said = _caution(scores, errors, 0, LEAST_GAIN, whole=True)
         assert (said is not None) is told
     assert said is not None
     assert "elastoplastic predicts held-out motion better" in said
@@ -100,7 +100,7 @@ def test_a_model_that_gains_much_but_less_than_is_asked_for_in_short_stances_is_
     even = 10.0 + np.linspace(-1.0, 1.0, 8)
     for share, told in ((0.8, False), (0.6, True)):
         scores, errors = contest(fit, even, share**2 * even)
-        said = _caution(scores, errors, 0, 0.5)
+        said = _caution(scores, errors, 0, 0.5, whole=True)
         assert (said is not None) is told
     assert said is not None
     assert "too little for steps as short" in said

@@ -13,7 +13,7 @@ from plantar.model_selection.cross_validation import folds_of
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.model_selection.model_fit import ModelFit, fit_model
 from plantar.model_selection.selection import ModelScore, _adds, _caution, _hardly_shown
-from plantar.models import BushMotion, Elastoplastic, Hardening, KelvinVoigt
+from plantar.models import BushMotion, Elastoplastic, Hardening, KelvinVoigt, StandardLinearSolid
 
 
 @pytest.fixture(scope="module")
@@ -107,13 +107,41 @@ def test_an_added_term_is_four_deviations_from_none(deviations: float, adds: boo
 def test_a_rejected_model_is_told_of_from_three_tenths_on(error: float, told: bool, fit: ModelFit) -> None:
     even = np.linspace(0.9, 1.1, 8)
     scores = [score(KelvinVoigt(), 1.0, fit), score(Elastoplastic(), error, fit, "is not passive")]
-    found = _caution(scores, [even, error**2 * even], 0, 0.1)
+    found = _caution(scores, [even, error**2 * even], 0, 0.1, whole=True)
     assert (found is not None) == told
     assert found is None or found.startswith(
         "elastoplastic predicts held-out motion better (0.69 against 1 rms) but is not passive; stiffness"
     )
-    small = _caution([scores[0], replace(scores[1], refused=None)], [even, error**2 * even], 0, 0.5)
+    small = _caution(
+        [scores[0], replace(scores[1], refused=None)], [even, error**2 * even], 0, 0.5, whole=True
+    )
     assert small is None or "but by too little for steps as short as these" in small
+
+
+@pytest.mark.parametrize(
+    ("error", "time", "softer", "relaxing", "told"),
+    [
+        (0.89, 4.0, 0.10, 50.0, True),
+        (0.91, 4.0, 0.10, 50.0, False),  # gains less than a model that is chosen
+        (0.89, 3.9, 0.10, 50.0, False),  # as slow as motions can show
+        (0.89, 4.0, 0.06, 50.0, False),  # as the attitude's wander makes it
+        (0.89, 4.0, 0.10, -50.0, False),  # not passive
+    ],
+)
+def test_rubber_that_yields_more_slowly_than_motions_show_is_told_of_from_a_tenth_on(
+    error: float, time: float, softer: float, relaxing: float, told: bool, fit: ModelFit
+) -> None:
+    solid = replace(
+        fit, model=StandardLinearSolid(), values=np.array([(1 - softer) * fit.values[0], fit.values[1], relaxing]),
+        shape=np.array([time]), limits=np.array([[0.05], [4.0]]),
+    )  # fmt: skip
+    even = np.linspace(0.9, 1.1, 8)
+    scores = [score(KelvinVoigt(), 1.0, fit), ModelScore(solid.model, error, solid, "too slow")]
+    found = _caution(scores, [even, error**2 * even], 0, 0.1, whole=True)
+    assert (found is not None) == told
+    assert found is None or found.startswith(
+        "rubber that goes on yielding for 4 s or longer predicts held-out"
+    )
 
 
 def test_a_torque_where_no_angle_is_known_does_not_pass_the_filter() -> None:

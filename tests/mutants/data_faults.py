@@ -38,12 +38,12 @@ DATA_FAULTS = (
         "        *own,\n", "", ("feet/assess/test_late_recordings.py",),
     ),
     Mutant(
-        "feet/assess/play.py", "play is as large as half of it", "{2e3 * loss", "{1e3 * loss",
+        "feet/assess/play.py", "play is as large as half of it", "Play(2 * loss", "Play(loss",
         ("feet/assess/test_play.py",),
     ),
     Mutant(
         "feet/assess/play.py", "play need not explain more than the model",
-        "BETTER * found.squares", "0.0 * found.squares",
+        "BETTER * self.squares", "0.0 * self.squares",
         ("feet/assess/test_play.py",),
     ),
     Mutant(

@@ -62,7 +62,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "model_selection/selection.py", "a refused model is told of for any gain",
-        "score.held_out_rms < (1 - TELLING_GAIN) * scores[winner].held_out_rms",
+        "score.held_out_rms < (1 - asked[place]) * scores[winner].held_out_rms",
         "score.held_out_rms < scores[winner].held_out_rms",
     ),
     Mutant(
@@ -75,7 +75,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "model_selection/model_fit.py", "a shape near its range's end counts as inside",
-        "value > (1 - AT_LIMIT) * high", "value > high",
+        "self.shape[place] > (1 - AT_LIMIT) * self.limits", "self.shape[place] > self.limits",
     ),
     Mutant(
         "estimation/slow_drift.py", "drift about the first sample, so that means change",

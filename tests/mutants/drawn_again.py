@@ -108,8 +108,8 @@ VERDICTS = (
         "> WORTH * float(np.std(block.response))", "> 0.0",
     ),
     Mutant(
-        "feet/assess/play.py", "play is told as its half",
-        "{2e3 * loss / stiffness:.2g}", "{1e3 * loss / stiffness:.2g}",
+        "feet/assess/play.py", "an axis without play is told of the other's",
+        "SOME * other.jump", "0.0 * other.jump",
     ),
     Mutant(
         "feet/assess/diagnosis.py", "residuals of any colour are the model's",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from plantar.conventions import ROTATIONAL_AXES
+from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first, untimed
@@ -13,7 +13,7 @@ from plantar.feet.assess.late_recordings import RECORDING_LATE, late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.odd_recordings import odd_recordings, odd_walks
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
-from plantar.feet.assess.play import play_notes
+from plantar.feet.assess.play import Play, find_play, play_notes
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.assess.sensor_hysteresis import hysteresis_notes
@@ -58,11 +58,12 @@ def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
     """Each axis of a fitted foot widened, scored, judged and diagnosed, or why it is given up. between: what all axes
     show recordings to differ by."""
     edges = mostly_on_an_edge(fitted.foot, fitted.ready.robot.feet[fitted.foot], fitted.ready.fitted)
-    found = FootFit(notes=(*edges, *fitted.jumps))
+    found, plays = FootFit(notes=(*edges, *fitted.jumps)), _plays(fitted)
     for axis in ROTATIONAL_AXES:
         if axis in fitted.fits and axis not in fitted.given_up:
             with gives_up(axis, fitted.given_up):
-                found = _with_axis(found, fitted, fitted.fits[axis], between)
+                others = [play for at, play in plays.items() if at != axis]
+                found = _with_axis(found, fitted, fitted.fits[axis], between, *others)
         if axis in fitted.given_up:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
@@ -79,8 +80,23 @@ def without_soft_imu(feet: Sequence[FootFit]) -> list[FootFit]:
     return [replace(one, parameters=doubted(one.parameters, soft)) for one in feet]
 
 
-def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart) -> FootFit:
-    """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
+def _plays(fitted: FittedFoot) -> dict[Axis, Play]:
+    """The axes of a foot that surely play, each with its play."""
+    plays = dict[Axis, Play]()
+    for axis, fit in fitted.fits.items():
+        if axis not in fitted.given_up:
+            with gives_up(axis, fitted.given_up):
+                tangent = Tangent.of(fit, fitted.thin.fitted, fitted.ready.settings.shared)
+                play = find_play(tangent)
+                if play is not None and play.surely(tangent):
+                    plays[axis] = play
+    return plays
+
+
+def _with_axis(
+    found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart, other: Play | None = None
+) -> FootFit:
+    """What was found, and one axis: its fit widened, scored, judged and diagnosed. other: the other axis' play."""
     ready, thin = fitted.ready, fitted.thin
     tangent = Tangent.of(fit, thin.fitted, ready.settings.shared)
     with_logs = replace(tangent, recordings=recordings_of(tangent.blocks, ready.fitted))
@@ -103,7 +119,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     walks = walk_stiffness(ready.recordings, wide)
     own = [
-        *play_notes(tangent, wide),
+        *play_notes(tangent, wide, other),
         *hysteresis_notes(tangent, wide),
         *misread_joint_notes(ready.robot, with_logs, wide),
         *late_recordings(tangent, wide),

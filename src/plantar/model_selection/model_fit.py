@@ -97,7 +97,7 @@ class ModelFit:
         for place, term in enumerate(self.model.shape_terms):
             low, high = self.limits[:, place]
             value = self.shape[place]
-            if (term, "high") in self.model.blind_ends and value > (1 - AT_LIMIT) * high:
+            if (term, "high") in self.model.blind_ends and self.at_upper_end(term):
                 found.append(f"{term} lies at or beyond {high:.3g}, the largest that these motions can show")
             if (term, "low") in self.model.blind_ends and value < (1 + AT_LIMIT) * low:
                 found.append(f"{term} lies at or below {low:.3g}, the smallest that these motions can show")
@@ -108,6 +108,11 @@ class ModelFit:
             )
             found.append(f"cannot be told from zero: {', '.join(known)}")
         return tuple(found)
+
+    def at_upper_end(self, term: str) -> bool:
+        """Whether a nonlinear parameter lies at the largest that was tried."""
+        place = self.model.shape_terms.index(term)
+        return bool(self.shape[place] > (1 - AT_LIMIT) * self.limits[1, place])
 
     def _told(self, place: int) -> bool:
         """Whether a term of the model's own is told from zero: by itself, or by the stiffness of its element.

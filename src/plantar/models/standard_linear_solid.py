@@ -12,6 +12,7 @@ from plantar.conventions import Array
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion
 
 FASTEST = 0.05  # s: faster relaxation is a damper in the band that a bush is identified in
+RELAXATION_TIME = "relaxation_time"
 LONGEST_SHARE = 0.1  # of the longest run: slower relaxation is drift
 
 
@@ -24,16 +25,16 @@ class StandardLinearSolid(BushModel):
 
     name: ClassVar[str] = "standard_linear_solid"
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "relaxing_stiffness")
-    shape_terms: ClassVar[tuple[str, ...]] = ("relaxation_time",)
+    shape_terms: ClassVar[tuple[str, ...]] = (RELAXATION_TIME,)
     remembers: ClassVar[bool] = True
     tried_states: ClassVar[tuple[float, ...]] = (-0.3, 0.0, 0.3)
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = frozenset(
-        {("relaxation_time", "low"), ("relaxation_time", "high")}
+        {(RELAXATION_TIME, "low"), (RELAXATION_TIME, "high")}
     )
     dissipative_terms: ClassVar[tuple[str, ...]] = ("relaxing_stiffness",)
     units: ClassVar[dict[str, tuple[str, str]]] = {
         "relaxing_stiffness": ("N.m/rad", "N/m"),
-        "relaxation_time": ("s", "s"),
+        RELAXATION_TIME: ("s", "s"),
     }
 
     def candidates(self, motions: Sequence[BushMotion]) -> Array:

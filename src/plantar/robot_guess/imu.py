@@ -16,6 +16,8 @@ from plantar.robot_guess.stance import Stance
 
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[0-9]+")
 BODY = {"torso", "chest", "trunk", "body", "pelvis", "waist", "base", "root", "hip"}
+UPPER = {"torso", "chest", "trunk"}  # names of one part
+EMPTY = {"imu", "link", "frame", "sensor"}  # say nothing of where
 NOT_IT = {
     "skin", "hand", "arm", "leg", "foot", "camera", "head", "neck", "lidar", "l", "r", "left", "right", "wrist",
 }  # fmt: skip
@@ -51,7 +53,9 @@ def find_frame(tree: UrdfTree, name: str, frame: str) -> Mount:
     if frame in tree.links:
         return Mount(frame, np.eye(3), False, "the frame of its messages")
     links = list(tree.links)
-    said = _words(name) - {"imu"}
+    said = (_words(name) | _words(frame)) - EMPTY
+    if said & UPPER:
+        said |= UPPER
     ranked = sorted(links, key=lambda link: (-_score(_words(link), said), links.index(link)))
     best = ranked[0] if ranked and _score(_words(ranked[0]), said) > 0 else links[0]
     top = _score(_words(best), said)

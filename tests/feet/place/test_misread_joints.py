@@ -216,11 +216,13 @@ def test_one_foot_that_shows_a_soft_mount_tells_of_both(
 
 
 def test_what_a_soft_mount_moves_by_two_per_cent_matters() -> None:
-    """It moves hysteresis and the bush's place as well."""
-    for moved, matters in ((7.0, False), (9.0, True)):
+    """It moves hysteresis and the bush's place as well. An axis of which nothing is known tells nothing of the IMU."""
+    for moved, unsure, matters in ((7.0, 50.0, False), (9.0, 50.0, True), (9.0, 110.0, False)):
         values, std = np.array([400.0 + moved, 20.0, 0.003]), np.array([1.0, 1.0, 1e-4])
         fit = SimpleNamespace(values=values, std=std, squares=7.0, singular=False)
-        wide: Any = SimpleNamespace(holds=lambda _: True)
+        wide: Any = SimpleNamespace(
+            holds=lambda _: True, values=np.array([400.0, 20.0]), std=np.array([unsure, 5.0])
+        )
         wider: Any = SimpleNamespace(least_squares=fit)
         for kind in ("soft", "gain"):
             found = _misread("the IMU", kind, wider, wide, np.array([400.0, 20.0]))

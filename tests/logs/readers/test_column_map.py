@@ -229,3 +229,23 @@ def test_a_file_that_cannot_be_opened_is_one_line(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(text_numbers, "open", refuse, raising=False)
     with pytest.raises(LogError, match=r"log\.txt: cannot be read: Permission denied"):
         open_log(tmp_path / "log.txt")
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_a_table_that_is_not_parted_by_commas_is_refused_for_that(mark: str, tmp_path: Path) -> None:
+    """And not for the columns of the map, none of which it can hold."""
+    (tmp_path / "log.csv").write_text("time,neck_deg\n0,1\n1,2\n".replace(",", mark))
+    robot = make_robot(tmp_path / "robot", columns={"joint.<joint>.position": "<joint>_deg"})
+    valid = "a first line of column names with commas between; decimal points"
+    with pytest.raises(LogError, match=rf"has one column, 'time.neck_deg' \(valid: {valid}\)"):
+        open_log(tmp_path / "log.csv", robot)
+
+
+@pytest.mark.parametrize("source", ["q_<joint>", " q_<joint>"])
+def test_blanks_beside_the_names_of_a_table_are_not_theirs(source: str, tmp_path: Path) -> None:
+    """Loggers write a blank behind each comma; a map that says it too is as good."""
+    (tmp_path / "log.csv").write_text("time, q_neck, t\n0, 3, 5\n1, 4, 6\n")
+    columns = {"joint.<joint>.position": source, "time": source.replace("q_<joint>", "t")}
+    log = open_log(tmp_path / "log.csv", make_robot(tmp_path / "robot", columns=columns))
+    np.testing.assert_array_equal(log.columns["joint.neck.position"], [3, 4])
+    np.testing.assert_array_equal(log.time, [5, 6])

@@ -10,6 +10,7 @@ import pytest
 
 from made_tables import write
 from plantar.errors import LogError
+from plantar.logs.readers import open_log
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables import csv_text
 from plantar.logs.readers.tables.csv_text import pieces, survey
@@ -102,3 +103,27 @@ def test_a_cut_gzip_gives_all_that_it_holds(
         text = csv_text._Text(path)
         assert b"".join(text.blocks()) == held
         assert text.cut == "is a cut gzip file; what is whole was read"
+
+
+@pytest.mark.parametrize("units", [b"s,deg", b"[s],", b"s,1", b" ms , rad "])
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"])
+@pytest.mark.parametrize("block", [7, 1000])
+def test_a_line_of_units_below_the_names_is_no_sample(
+    units: bytes, end: bytes, block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small(monkeypatch, block)
+    names, body = HEADER.rstrip() + end, rows(20, end)
+    path = write(tmp_path, names + units + end + body)
+    found = survey(path, ReadLimit(path))
+    assert found.units.encode() == units
+    assert b"".join(pieces(path, found)).strip() == body.strip()
+    assert open_log(path).time.size == 20
+
+
+@pytest.mark.parametrize("first", [b"0.00,nan", b"nan,NA", b",", b"1,1", b"s", b"s,deg,V", b"0.0,deg"])
+def test_a_row_with_a_number_a_hole_or_another_length_is_no_line_of_units(
+    first: bytes, tmp_path: Path
+) -> None:
+    path = write(tmp_path, HEADER + first + b"\n" + rows(20))
+    found = survey(path, ReadLimit(path))
+    assert (found.units, found.first) == ("", len(HEADER))

@@ -15,12 +15,13 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
-from plantar.conventions import ROTATIONAL_AXES, SURE, Array, cross
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, SURE, Array, cross
 from plantar.estimation import least_left
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.tangent import Tangent
 from plantar.notes import Note
+from plantar.results.feet_rows import WEAK_WIDTH
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate
 from plantar.signals.orientation import attitude
@@ -123,8 +124,10 @@ def _misread(joint: str, kind: str, wider: Tangent, wide: AxisFit, usual: Array)
     if not (SURE * std < away < most and not fit.singular):
         return None
     moved = (fit.values[:2] - usual[:2]) / (PART if kind == "play" else 1.0)
-    # A soft mount also moves what hysteresis and the bush's place are taken for: only a part of that shows here.
-    soft = kind == "soft" and bool((np.abs(moved) > SOFT_MOVES * np.abs(usual[:2])).any())
+    # A soft mount also moves what hysteresis and the bush's place are taken for: only a part of that shows here. An
+    # axis whose stiffness is not known bends too little to tell what tilts.
+    soft = kind == "soft" and NORMAL95 * float(wide.std[0]) < WEAK_WIDTH * abs(float(wide.values[0]))
+    soft = soft and bool((np.abs(moved) > SOFT_MOVES * np.abs(usual[:2])).any())
     matters = soft or not wide.holds(moved)
     return Misread(joint, kind, size, fit.squares, matters)
 

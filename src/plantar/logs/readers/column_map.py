@@ -153,7 +153,7 @@ def _for_each_joint(entries: Mapping[str, Any], names: Sequence[str], path: Path
         if not isinstance(source, str) or source.count(ANY_JOINT) != 1 or key.count(ANY_JOINT) != 1:
             valid = f"joint.{ANY_JOINT}.position: {{from: {ANY_JOINT}_angle, unit: deg}}"
             raise LogError(f"columns.{key} needs one {ANY_JOINT} here and there", path=path, valid=valid)
-        before, after = source.split(ANY_JOINT)
+        before, after = source.strip().split(ANY_JOINT)
         found = [re.fullmatch(f"{re.escape(before)}(.+){re.escape(after)}", name) for name in names]
         joints = [match[1] for match in found if match]
         if not joints:
@@ -198,6 +198,7 @@ def _one(values: Array, key: str, path: Path) -> Array:
 
 def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Array:
     names: Sequence[str] = list(table)
+    source = source.strip() if isinstance(source, str) else source
     if isinstance(source, int) and not isinstance(source, bool):
         if not 0 <= source < len(names):
             raise LogError(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}")

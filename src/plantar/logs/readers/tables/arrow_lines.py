@@ -10,12 +10,8 @@ import pyarrow.csv as pa_csv
 
 from plantar.conventions import Array
 from plantar.errors import LogError
+from plantar.logs.readers.tables.csv_text import HOLES
 
-# What pandas, R, databases, spreadsheets and the C libraries write where nothing was recorded.
-HOLES = [
-    *("", "nan", "NaN", "null", "NULL", "None", "NA", "<NA>", "N/A", "n/a", "#N/A"),
-    *("-nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN", "-1.#IND"),
-]
 PARSED = 2**20  # bytes of text that one core parses at a time
 UNREADABLE = (pa.ArrowInvalid, pa.ArrowKeyError)
 
@@ -86,7 +82,8 @@ class ArrowLines:
                 reason = (
                     f"a row has {row.actual_columns} values where the header has {row.expected_columns}: "
                 )
-                raise LogError(reason + row.text[:40] + "...", path=self.path) from error
+                valid = "one line of column names, then as many values in each row"
+                raise LogError(f"{reason}{row.text[:40]}...", path=self.path, valid=valid) from error
             raise LogError(f"is not a readable CSV: {reason}", path=self.path) from error
 
     def _invalid(self, row: pa_csv.InvalidRow) -> str:

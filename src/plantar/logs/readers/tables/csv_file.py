@@ -40,10 +40,12 @@ def read_csv(
     """
     found = survey(path, limit)
     limit.columns(len(found.names))
-    # A column map says names as the file has them, blanks included.
-    header = told_apart([name.strip() for name in found.names] if strict else found.names)
+    header = told_apart([name.strip() for name in found.names])
     names = choose(header)
     limit.numbers(found.rows, len(names))
+    if found.units:
+        text = f"{path.name}: the line below the names holds no number and is not read, as units: '{found.units[:40]}'"
+        notes.append(Note("units_line", "info", text))
     if found.cut is not None:
         notes.append(Note("file_cut", "warning", f"{path.name} {found.cut}"))
     place = {name: row for row, name in enumerate(names)}

@@ -17,16 +17,23 @@ from plantar.logs.readers.read_limit import BLOCK, COLUMNS, ReadLimit
 PIECE = 2**23  # bytes of whole lines at a time: few enough to hold, enough for two cores
 LINE_LIMIT = 2**20  # bytes of one line: COLUMNS numbers at full precision need a quarter of it
 MARK = codecs.BOM_UTF8
+# What pandas, R, databases, spreadsheets and the C libraries write where nothing was recorded.
+HOLES = [
+    *("", "nan", "NaN", "null", "NULL", "None", "NA", "<NA>", "N/A", "n/a", "#N/A"),
+    *("-nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN", "-1.#IND"),
+]
 
 
 @dataclass(frozen=True)
 class Survey:
     """Names of the columns, where in the text its rows begin and end, and how many there are at most.
 
-    `cut` says what is missing at the end of the file, if anything is.
+    `units` is the second line of a header that has one; `cut` says what is missing at the end of the file, if anything
+    is.
     """
 
     names: list[str]
+    units: str
     first: int
     end: int
     rows: int
@@ -40,7 +47,7 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
     head, size, rows, end = b"", 0, 0, 0
     behind, held = deque[bytes](), 0  # the last blocks: a line or more
     names: list[str] | None = None
-    first = 0
+    units, first = "", 0
     whole = True  # no character waits for its end in the next block
     text = _Text(path)
     for block in text.blocks():
@@ -63,7 +70,7 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
             found = _header(head, path, limit)
             if found is None:
                 continue
-            names, first = found
+            names, units, first = found
             rows, end = _ends(head[first:]), size - len(block) + _after_last(block)
         elif cut := _after_last(block):
             rows, end = rows + _ends(block), size - len(block) + cut
@@ -76,7 +83,7 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
     cut_by = text.cut or (None if end == size else "ends in the middle of a line; that line is left out")
     tail = b"".join(behind)[-LINE_LIMIT:]
     last = tail[: len(tail) - (size - end)].rstrip().rsplit(b"\n", 1)[-1]
-    return Survey(names, first, end, rows, last, cut_by)
+    return Survey(names, units, first, end, rows, last, cut_by)
 
 
 def pieces(path: Path, found: Survey) -> Iterator[bytes]:
@@ -97,21 +104,51 @@ def pieces(path: Path, found: Survey) -> Iterator[bytes]:
         yield rest
 
 
-def _header(head: bytes, path: Path, limit: ReadLimit) -> tuple[list[str], int] | None:
-    """The names in the first line that is not blank, and where the next begins; None where it goes on."""
+def _header(head: bytes, path: Path, limit: ReadLimit) -> tuple[list[str], str, int] | None:
+    """The names in the first line that is not blank, a line of units below it, and where the rows begin; None where it
+    goes on."""
     at = len(head) - len(head.removeprefix(MARK).lstrip(b" \t\r\n"))
-    ends = [place for mark in (b"\n", b"\r") if (place := head.find(mark, at)) >= 0]
-    line = head[at : min(ends)] if ends else head[at:]
+    end = _end_of_line(head, at)
+    line = head[at:end]
     if line.count(b",") >= COLUMNS:
         limit.columns(line.count(b",") + 1)
     if len(line) > LINE_LIMIT or (not line and len(head) > LINE_LIMIT):
         raise _long_line(path)
-    if not ends:
+    if end is None:
+        return None
+    below = end + len(head[end:]) - len(head[end:].lstrip(b"\r\n"))
+    second = _end_of_line(head, below)
+    if second is None and len(head) - below <= LINE_LIMIT:
         return None
     try:
-        return next(csv.reader([line.decode()])), min(ends) + 1
+        names = next(csv.reader([line.decode()]))
+        units = head[below:second].decode("utf-8", "replace")
+        if second is not None and _is_text(next(csv.reader([units])), len(names)):
+            return names, units, second + 1
+        return names, "", end + 1
     except csv.Error as error:
         raise LogError(f"has no readable header: {error}", path=path) from error
+
+
+def _end_of_line(text: bytes, at: int) -> int | None:
+    ends = [place for mark in (b"\n", b"\r") if (place := text.find(mark, at)) >= 0]
+    return min(ends, default=None)
+
+
+def _is_text(cells: list[str], columns: int) -> bool:
+    """Whether a line holds texts alone, as units below the names; "1" is a unit too, an empty cell may be one."""
+    texts = [text for cell in cells if (text := cell.strip()) not in ("", "1")]
+    return (
+        len(cells) == columns and bool(texts) and not any(_is_number(text) or text in HOLES for text in texts)
+    )
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def _ends(text: bytes) -> int:

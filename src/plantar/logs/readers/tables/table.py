@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
+PARTED = "a first line of column names with commas between; decimal points"
 OTHER_MARKS = (";", "\t", "#", "%")  # of columns that are not parted by commas, or of a remark before them
 
 
@@ -78,7 +79,13 @@ def _stretches(path: Path, robot: RobotModel | None, limit: ReadLimit) -> Stretc
 
 def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array]:
     """Every column of numbers of a table under its own name, for logs with a column map. Raises LogError."""
-    columns = _columns(path, limit, list, notes, strict=False)
+
+    def choose(names: Sequence[str]) -> list[str]:
+        if len(names) == 1 and any(mark in names[0] for mark in OTHER_MARKS):
+            raise LogError(f"has one column, '{names[0][:40]}'", path=path, valid=PARTED)
+        return list(names)
+
+    columns = _columns(path, limit, choose, notes, strict=False)
     columns = {name: values for name, values in columns.items() if not np.isnan(values).all()}
     twice = next((name for name in columns if name.endswith("\0")), None)
     if twice is not None:
