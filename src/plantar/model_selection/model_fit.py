@@ -39,7 +39,8 @@ from plantar.models import BESIDE, BushModel
 AT_LIMIT = 0.02  # of a nonlinear parameter: this near to the end of its range it counts as at the end
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
 SLIP_ANGLE = "slip_angle"
-ACROSS = 9  # shapes all over their range
+# Slip angles all over their range, each two thirds larger; iterations at each, and how many are gone on from.
+ANGLES, FIRST_ITERATIONS, GONE_ON_FROM = 9, 2, 3
 
 
 @dataclass(frozen=True)
@@ -144,8 +145,8 @@ def fit_model(
     return refine(problem, best_candidate(problem, pieces, fit_all(pieces, shared_offset)), limits)
 
 
-def fit_again(before: ModelFit, data_sets: Sequence[DataSet], elsewhere: bool = False) -> ModelFit:
-    """The fit of the same recordings with other torques, from where it came to rest before."""
+def fit_again(before: ModelFit, data_sets: Sequence[DataSet], *, elsewhere: bool = False) -> ModelFit:
+    """The fit of the same recordings with other torques, from where it came to rest before, and from `elsewhere`."""
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
     return refine(problem, where_it_rested(problem, before), before.limits, rested=True, elsewhere=elsewhere)
@@ -183,13 +184,19 @@ def where_it_rested(problem: Problem, before: ModelFit) -> Point:
 
 
 def refine(
-    problem: Problem, start: Point, limits: Array, *, refined: bool = True, rested: bool = False, elsewhere: bool = False
+    problem: Problem,
+    start: Point,
+    limits: Array,
+    *,
+    refined: bool = True,
+    rested: bool = False,
+    elsewhere: bool = False,
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
     Where the foot steps, they go from the better one of two guesses of the state at each landing: where steps lead, and
     what the air leaves of that. A fit that had come to rest (`rested`) with other torques keeps its landings and looks
-    about it for corners only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong, as are
+    about it for corners only nearby, and, if asked to, `elsewhere`. Not `refined`, it stays at the start: enough to see that a model is wrong, as are
     deviations without what a fit takes up of noise.
     """
     if not refined or not (len(start.shape) or problem.model.remembers):
@@ -201,7 +208,7 @@ def refine(
     for iterations, width in searches:
         rests.append(_rest(problem, _onward(problem, rests) if rests else start, limits, iterations, width))
     found = rests[-1]
-    if elsewhere:
+    if elsewhere and SLIP_ANGLE in problem.model.shape_terms:
         found = _elsewhere(problem, found, limits)
     return _finished(problem, found, limits, refined)
 
@@ -226,22 +233,23 @@ def _rest(problem: Problem, point: Point, limits: Array, iterations: int, width:
 
 
 def _elsewhere(problem: Problem, found: Point, limits: Array) -> Point:
-    """The point itself, or where the search comes to rest from the best shape all over its range.
+    """The point itself, or where the search comes to rest from another slip angle, all over the range of these.
 
-    With the states of all landings free the squares have several minima along the angle at which an element slips.
+    With the state of every landing free the squares have several minima along it.
     """
-    low, high = limits[:, 0]
-    tried = []
-    for angle in np.geomspace(low, high, ACROSS):
-        held = np.array([angle])
-        start = problem.at(held, found.initial_states)
-        tried.append(_rest(problem, start, np.array([held, held]), 2, WIDEST_SCAN))
-    best = sorted(tried, key=lambda point: point.squares)[:3]
-    best = [_rest(problem, each, limits, LANDING_ITERATIONS, WIDEST_SCAN) for each in best]
-    least = min(best, key=lambda point: point.squares)
-    if least.squares > (1 - LANDING_GAIN) * found.squares:
+    place = problem.model.shape_terms.index(SLIP_ANGLE)
+    tried = list[Point]()
+    for angle in np.geomspace(*limits[:, place], ANGLES):
+        shape = found.shape.copy()
+        shape[place] = angle
+        start, held = problem.at(shape, found.initial_states), np.array([shape, shape])
+        tried.append(_rest(problem, start, held, FIRST_ITERATIONS, WIDEST_SCAN))
+    tried.sort(key=lambda point: point.squares)
+    rests = [_rest(problem, each, limits, LANDING_ITERATIONS, WIDEST_SCAN) for each in tried[:GONE_ON_FROM]]
+    best = min(rests, key=lambda point: point.squares)
+    if best.squares > (1 - LANDING_GAIN) * found.squares:
         return found
-    return _rest(problem, least, limits, ITERATIONS, WIDEST_SCAN * NARROWING)
+    return _rest(problem, best, limits, ITERATIONS, WIDEST_SCAN * NARROWING)
 
 
 def _onward(problem: Problem, rests: Sequence[Point]) -> Point:
