@@ -196,8 +196,8 @@ def refine(
 
     Where the foot steps, they go from the better one of two guesses of the state at each landing: where steps lead, and
     what the air leaves of that. A fit that had come to rest (`rested`) with other torques keeps its landings and looks
-    about it for corners only nearby, and, if asked to, `elsewhere`. Not `refined`, it stays at the start: enough to see that a model is wrong, as are
-    deviations without what a fit takes up of noise.
+    about it for corners only nearby, and, if asked to, `elsewhere`. Not `refined`, it stays at the start: enough to see
+    that a model is wrong, as are deviations without what a fit takes up of noise.
     """
     if not refined or not (len(start.shape) or problem.model.remembers):
         return _finished(problem, start, limits, refined)
@@ -238,8 +238,9 @@ def _elsewhere(problem: Problem, found: Point, limits: Array) -> Point:
     With the state of every landing free the squares have several minima along it.
     """
     place = problem.model.shape_terms.index(SLIP_ANGLE)
+    low, high = limits[:, place]
     tried = list[Point]()
-    for angle in np.geomspace(*limits[:, place], ANGLES):
+    for angle in np.geomspace(low, high, ANGLES):
         shape = found.shape.copy()
         shape[place] = angle
         start, held = problem.at(shape, found.initial_states), np.array([shape, shape])

@@ -26,7 +26,9 @@ def moved(
 ) -> np.ndarray:
     """Of each edge [m], by a centre of pressure (N,) [m]; a torque that is not given grows with the angle."""
     angle = 0.02 * SWAY if angle is None else angle
-    recording = made_recording("sway", angle, STIFFNESS * angle if torque is None else torque, stances=stances)
+    recording = made_recording(
+        "sway", angle, STIFFNESS * angle if torque is None else torque, stances=stances
+    )
     depth = edge_distances(np.column_stack([cop_x, np.zeros(COUNT)]), SOLE)
     return moved_inwards(recording, FOOT, depth, SOLE)
 
@@ -88,8 +90,12 @@ def test_over_an_edge_the_torque_hardly_grows(share: float, is_edge: bool) -> No
 STEPS = Stances(np.arange(COUNT) // 300, np.ones(COUNT))
 
 
-@pytest.mark.parametrize(("inside", "is_moved"), [(0.002, True), (0.0085, True), (0.0095, False), (0.02, False)])
-def test_the_edge_of_a_foot_that_steps_is_where_its_centre_of_pressure_stops(inside: float, is_moved: bool) -> None:
+@pytest.mark.parametrize(
+    ("inside", "is_moved"), [(0.002, True), (0.0085, True), (0.0095, False), (0.02, False)]
+)
+def test_the_edge_of_a_foot_that_steps_is_where_its_centre_of_pressure_stops(
+    inside: float, is_moved: bool
+) -> None:
     """Three tenths of half of 6 cm at most: nearer to the middle the centre of pressure only turns back."""
     cop_x = np.minimum(0.01 + 0.029 * SWAY, 0.03 - inside)
     found = moved(cop_x, stances=STEPS)
@@ -110,7 +116,9 @@ def test_the_edge_of_a_wide_sole_is_a_centimetre_from_its_place_at_most() -> Non
 
 
 @pytest.mark.parametrize(("middle", "swing", "expected"), [(0.005, 0.029, 0.006), (0.01, 0.027, 0.007)])
-def test_an_edge_of_steps_is_moved_by_what_moves_it_more(middle: float, swing: float, expected: float) -> None:
+def test_an_edge_of_steps_is_moved_by_what_moves_it_more(
+    middle: float, swing: float, expected: float
+) -> None:
     """4 mm beyond the edge opposite and a stop at 6 mm; 7 mm beyond, and nothing that comes near."""
     found = moved(middle + swing * SWAY, stances=STEPS)
     assert found[:, BACK] == pytest.approx(expected, rel=0.02)

@@ -1,5 +1,7 @@
-"""Edges of a sole that seem to lie inside of its outline: a zero of the torque moves the centre of pressure, and a force
-sensor or an outline may be somewhat beside its place in the robot file."""
+"""Edges of a sole that seem to lie inside of its outline.
+
+A zero of the torque moves the centre of pressure, and a force sensor or an outline may be beside its place.
+"""
 
 from __future__ import annotations
 
