@@ -102,6 +102,10 @@ def test_the_edge_of_a_foot_that_steps_is_where_its_centre_of_pressure_stops(
     assert found[:, FRONT] == pytest.approx(inside if is_moved else 0.0)
     assert not np.delete(found, FRONT, axis=1).any()
     assert not moved(cop_x).any(), "a foot that stands may lean there and be flat"
+    recording = made_recording("sway", 0.02 * SWAY, STIFFNESS * 0.02 * SWAY, stances=STEPS)
+    recording.contacts[FOOT].standing[cop_x > 0.0] = False
+    depth = edge_distances(np.column_stack([cop_x, np.zeros(COUNT)]), SOLE)
+    assert not moved_inwards(recording, FOOT, depth, SOLE).any(), "a foot in the air stops nowhere"
 
 
 def test_the_edge_of_a_wide_sole_is_a_centimetre_from_its_place_at_most() -> None:

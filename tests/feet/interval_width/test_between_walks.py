@@ -95,6 +95,8 @@ def test_a_memory_is_as_unsure_as_the_stiffness_or_as_refits_without_one_walk_sh
     tangent = replace(
         Tangent.of(fit, walks, False), fit=replace(with_memory(fit), turned=0.02, crosstalk=0.004)
     )
+    for one in walks:
+        one.raw[FOOT].torque[:, 1] = 30.0 * np.cos(one.time)
     refits = np.tile(tangent.fit.numbers, (count, 1))
     refits[0] += differ * np.array([400.0, 12.0, 5.0, 0.01])
     given: list[tuple[object, ...]] = []
@@ -109,6 +111,9 @@ def test_a_memory_is_as_unsure_as_the_stiffness_or_as_refits_without_one_walk_sh
     assert (model, shape, cutoff) == (tangent.fit.model, tangent.fit.shape, walks[0].cutoff)
     placed = data_set_of(walks[1], FOOT, "pitch", sets[1].steps.share, *tangent.fit.place[1:])
     np.testing.assert_array_equal(sets[1].torque, placed.torque)
+    assert np.ptp(sets[1].torque - walks[1].raw[FOOT].torque[:, 0]) == pytest.approx(
+        2 * 0.02 * 30.0, rel=0.01
+    )
     assert 0 < sets[1].steps.share < 1
     assert (axis_differences(Tangent.of(fit, walks, False)) is None) == (count == 5)
 

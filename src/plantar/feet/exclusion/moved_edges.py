@@ -43,7 +43,8 @@ def moved_inwards(recording: Recording, foot: str, depth: Array, polygon: Array)
 
 
 def _stopped_near(depth: Array, polygon: Array, fewest: int) -> Array:
-    """How far inside of each edge the centre of pressure stops, (n,) [m], where a place that is wrong would explain it.
+    """How far inside of each edge the centre of pressure stops, (n,) [m], where a place that is wrong would explain it;
+    below zero where it passes the edge.
 
     A sole that steps tips about all edges that it rolls over, a little in each step, and there the centre of pressure
     stops: that is the edge, wherever its outline is said to be. Where it only turns back near it, a few samples are
@@ -54,7 +55,7 @@ def _stopped_near(depth: Array, polygon: Array, fewest: int) -> Array:
         return np.zeros(depth.shape[1])
     stop = np.partition(known, fewest - 1, axis=0)[fewest - 1]
     most = min(MISPLACED, MISPLACED_SHARE * float(np.ptp(polygon, axis=0).min()) / 2)
-    return np.where(stop < most, stop.clip(min=0.0), 0.0)
+    return np.where(stop < most, stop, 0.0)
 
 
 def _passed_opposite(moments: Array, polygon: Array, fewest: int) -> Array:
