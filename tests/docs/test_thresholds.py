@@ -15,7 +15,7 @@ from plantar.design.rehearsals import attempt
 from plantar.estimation import residual_covariance, slow_drift, stance_least_squares
 from plantar.feet.assess import verdicts
 from plantar.feet.exclusion import edge_rolling, moved_edges
-from plantar.feet.interval_width import systematic
+from plantar.feet.interval_width import slip_angle, systematic
 from plantar.feet.place import place_notes, spread
 from plantar.model_selection import cross_validation, selection
 from plantar.motions import gait
@@ -60,6 +60,7 @@ def page(name: str) -> str:
             f"possible ({slip_indicator.POSSIBLE:g} deviations and {1e3 * slip_indicator.LEAST_SPEED:g} mm/s), "
             f"covers {1e3 * slip_indicator.LEAST_PATH:g} mm, and friction above a twentieth",
         ),
+        ("left_out.md", f"further inside, by up to {100 * moved_edges.MISPLACED:g} cm"),
         ("left_out.md", f"turns on by {1e3 * moved_edges.LEAST_PLATEAU:g} mrad or more"),
         (
             "left_out.md",
@@ -75,7 +76,7 @@ def page(name: str) -> str:
         (
             "walking.md",
             f"{100 * systematic.ELEMENT_UNSURE:g} % of its slip torque and of the damping beside it, and "
-            f"{100 * systematic.ANGLE_UNSURE:g} % of its slip angle",
+            f"no slip angle is known better than to {100 * slip_angle.UNRESOLVED_IN_STEPS:g} %",
         ),
         ("walks.md", f"`--period` ({gait.SHORTEST:g} to {gait.LONGEST:g} s)"),
         ("walks.md", f"about {gait.WALKING:g} s of steps"),

@@ -13,7 +13,7 @@ from plantar.model_selection import model_fit, selection
 from plantar.model_selection.cross_validation import Candidate
 from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.grid import Pieces
-from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
+from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model, refits_without_each
 from plantar.model_selection.selection import choose_model
 from plantar.model_selection.variable_projection import Problem
 from plantar.models import MODELS, BushMotion
@@ -172,6 +172,35 @@ def test_a_fit_that_had_come_to_rest_looks_for_no_other_landings(monkeypatch: py
     assert searched == 1
     fit_again(before, sets)
     assert len(asked) == searched
+
+
+@pytest.fixture(scope="module")
+def walked() -> tuple[list[DataSet], ModelFit]:
+    sets = [walk(f"walk_{seed}", seed)[0] for seed in (1, 2, 3)]
+    return sets, fit_model(MODELS["elastoplastic"], sets, shared_offset=False)
+
+
+def test_elsewhere_is_looked_for_from_a_minimum_that_is_not_the_least(
+    walked: tuple[list[DataSet], ModelFit],
+) -> None:
+    """From an angle that is too large, and landings that are all wrong, steps and scans come to rest halfway."""
+    sets, fit = walked
+    half = {label: np.full(len(states), 0.5) for label, states in fit.initial_states.items()}
+    wrong = replace(fit, shape=1.9 * fit.shape, initial_states=half)
+    stays, found = (fit_again(wrong, sets, elsewhere=look) for look in (False, True))
+    assert stays.value("slip_angle") > 1.5 * SLIP_ANGLE
+    assert stays.rms > 1.2 * found.rms
+    assert found.value("slip_angle") == pytest.approx(fit.value("slip_angle"), rel=0.02)
+    again = fit_again(fit, sets, elsewhere=True)
+    np.testing.assert_array_equal(again.values, fit_again(fit, sets).values)
+
+
+def test_refits_lack_one_recording_each(walked: tuple[list[DataSet], ModelFit]) -> None:
+    sets, fit = walked
+    found = refits_without_each(fit.model, fit.shape, fit.initial_states, sets, fit.cutoff)
+    without = [fit_again(fit, [each for each in sets if each is not one]) for one in sets]
+    np.testing.assert_allclose(found, [np.append(each.values, each.shape) for each in without], rtol=1e-9)
+    assert np.ptp(found, axis=0).all()
 
 
 def test_a_choice_goes_on_from_the_one_with_a_few_samples_more(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,7 @@ unknown initial state in every run. The uncertainty of all of them enters the in
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.estimation.residual_covariance import interval95
 from plantar.model_selection.absorbed_noise import lacking
-from plantar.model_selection.data_sets import DataSet, prepare_data_sets
+from plantar.model_selection.data_sets import DataSet, FilteredDataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces, fit_all
 from plantar.model_selection.partialled_out import robust_covariance
 from plantar.model_selection.variable_projection import (
@@ -39,6 +39,8 @@ from plantar.models import BESIDE, BushModel
 AT_LIMIT = 0.02  # of a nonlinear parameter: this near to the end of its range it counts as at the end
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
 SLIP_ANGLE = "slip_angle"
+# Slip angles all over their range, each two thirds larger; iterations at each, and how many are gone on from.
+ANGLES, FIRST_ITERATIONS, GONE_ON_FROM = 9, 2, 3
 
 
 @dataclass(frozen=True)
@@ -148,11 +150,36 @@ def fit_model(
     return refine(problem, best_candidate(problem, pieces, fit_all(pieces, shared_offset)), limits)
 
 
-def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
-    """The fit of the same recordings with other torques, from where it came to rest before."""
+def fit_again(before: ModelFit, data_sets: Sequence[DataSet], *, elsewhere: bool = False) -> ModelFit:
+    """The fit of the same recordings with other torques, from where it came to rest before, and from `elsewhere`."""
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
-    return refine(problem, where_it_rested(problem, before), before.limits, rested=True)
+    return refine(problem, where_it_rested(problem, before), before.limits, rested=True, elsewhere=elsewhere)
+
+
+def refits_without_each(
+    model: BushModel,
+    shape: Array,
+    initial_states: Mapping[str, Array],
+    data_sets: Sequence[DataSet],
+    cutoff: float,
+) -> Array:
+    """Values and shape (R, k + s) of the fits that lack one recording each, from where the fit of all came to rest."""
+    prepared = prepare_data_sets(data_sets, cutoff, drift=True)
+    limits, found = _limits(model, prepared), []
+    for left_out in prepared:
+        others = [each for each in prepared if each is not left_out]
+        problem = Problem(model, others, shared_offset=False)
+        start = problem.at(shape, np.concatenate([initial_states[each.label] for each in others]))
+        rest = _rest(problem, start, limits, ITERATIONS, WIDEST_SCAN * NARROWING)
+        found.append(np.append(rest.values, rest.shape))
+    return np.array(found)
+
+
+def _limits(model: BushModel, prepared: Sequence[FilteredDataSet]) -> Array:
+    """The range in which the motions can show a model's shape, (2, s)."""
+    shapes = model.candidates([each.motion for each in prepared])
+    return np.array([shapes.min(axis=0), shapes.max(axis=0)])
 
 
 def where_it_rested(problem: Problem, before: ModelFit) -> Point:
@@ -162,38 +189,73 @@ def where_it_rested(problem: Problem, before: ModelFit) -> Point:
 
 
 def refine(
-    problem: Problem, start: Point, limits: Array, *, refined: bool = True, rested: bool = False
+    problem: Problem,
+    start: Point,
+    limits: Array,
+    *,
+    refined: bool = True,
+    rested: bool = False,
+    elsewhere: bool = False,
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
     Where the foot steps, they go from the better one of two guesses of the state at each landing: where steps lead, and
     what the air leaves of that. A fit that had come to rest (`rested`) with other torques keeps its landings and looks
-    about it for corners only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong, as are
-    deviations without what a fit takes up of noise.
+    about it for corners only nearby, and, if asked to, `elsewhere`. Not `refined`, it stays at the start: enough to see
+    that a model is wrong, as are deviations without what a fit takes up of noise.
     """
     if not refined or not (len(start.shape) or problem.model.remembers):
         return _finished(problem, start, limits, refined)
     searches = [(ITERATIONS, WIDEST_SCAN * (NARROWING if rested else 1.0))]
     if problem.lands and not rested:
         searches = [*2 * [(LANDING_ITERATIONS, WIDEST_SCAN)], *searches]
-    remembers, rests = problem.model.remembers, list[Point]()
+    rests = list[Point]()
     for iterations, width in searches:
-        point = _onward(problem, rests) if rests else start
-        for _ in range(iterations):
-            moved = step(problem, point, limits)
-            if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
-                point = moved
-                continue
-            rest = moved or point
-            scanned = scan(problem, rest, width) if remembers else None
-            if remembers and scanned is None:
-                scanned = scan_shape(problem, rest, limits, width)
-            width *= NARROWING
-            point = scanned or rest
-            if scanned is None and (not remembers or width < NARROWEST_SCAN):
-                break
-        rests.append(point)
-    return _finished(problem, rests[-1], limits, refined)
+        rests.append(_rest(problem, _onward(problem, rests) if rests else start, limits, iterations, width))
+    found = rests[-1]
+    if elsewhere and SLIP_ANGLE in problem.model.shape_terms:
+        found = _elsewhere(problem, found, limits)
+    return _finished(problem, found, limits, refined)
+
+
+def _rest(problem: Problem, point: Point, limits: Array, iterations: int, width: float) -> Point:
+    """Where steps and scans from a point come to rest, scans at first as wide as `width`."""
+    remembers = problem.model.remembers
+    for _ in range(iterations):
+        moved = step(problem, point, limits)
+        if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
+            point = moved
+            continue
+        rest = moved or point
+        scanned = scan(problem, rest, width) if remembers else None
+        if remembers and scanned is None:
+            scanned = scan_shape(problem, rest, limits, width)
+        width *= NARROWING
+        point = scanned or rest
+        if scanned is None and (not remembers or width < NARROWEST_SCAN):
+            break
+    return point
+
+
+def _elsewhere(problem: Problem, found: Point, limits: Array) -> Point:
+    """The point itself, or where the search comes to rest from another slip angle, all over the range of these.
+
+    With the state of every landing free the squares have several minima along it.
+    """
+    place = problem.model.shape_terms.index(SLIP_ANGLE)
+    low, high = limits[:, place]
+    tried = list[Point]()
+    for angle in np.geomspace(low, high, ANGLES):
+        shape = found.shape.copy()
+        shape[place] = angle
+        start, held = problem.at(shape, found.initial_states), np.array([shape, shape])
+        tried.append(_rest(problem, start, held, FIRST_ITERATIONS, WIDEST_SCAN))
+    tried.sort(key=lambda point: point.squares)
+    rests = [_rest(problem, each, limits, LANDING_ITERATIONS, WIDEST_SCAN) for each in tried[:GONE_ON_FROM]]
+    best = min(rests, key=lambda point: point.squares)
+    if best.squares > (1 - LANDING_GAIN) * found.squares:
+        return found
+    return _rest(problem, best, limits, ITERATIONS, WIDEST_SCAN * NARROWING)
 
 
 def _onward(problem: Problem, rests: Sequence[Point]) -> Point:

@@ -7,7 +7,8 @@ import pytest
 
 from made_recording import FOOT, LOAD, PERIOD, made_recording
 from plantar.contact.polygon import edge_distances
-from plantar.feet.exclusion.moved_edges import moved_inwards
+from plantar.contact.stances import Stances
+from plantar.feet.exclusion.moved_edges import _stopped_near, moved_inwards
 
 COUNT = 3000
 TIME = PERIOD * np.arange(COUNT)
@@ -17,10 +18,17 @@ STIFFNESS = 400.0
 SWAY = np.sin(2 * np.pi * 0.25 * TIME)
 
 
-def moved(cop_x: np.ndarray, angle: np.ndarray | None = None, torque: np.ndarray | None = None) -> np.ndarray:
+def moved(
+    cop_x: np.ndarray,
+    angle: np.ndarray | None = None,
+    torque: np.ndarray | None = None,
+    stances: Stances | None = None,
+) -> np.ndarray:
     """Of each edge [m], by a centre of pressure (N,) [m]; a torque that is not given grows with the angle."""
     angle = 0.02 * SWAY if angle is None else angle
-    recording = made_recording("sway", angle, STIFFNESS * angle if torque is None else torque)
+    recording = made_recording(
+        "sway", angle, STIFFNESS * angle if torque is None else torque, stances=stances
+    )
     depth = edge_distances(np.column_stack([cop_x, np.zeros(COUNT)]), SOLE)
     return moved_inwards(recording, FOOT, depth, SOLE)
 
@@ -77,3 +85,45 @@ def test_over_an_edge_the_torque_hardly_grows(share: float, is_edge: bool) -> No
     slope = share * usual
     torque = np.where(angle > bend, STIFFNESS * bend + slope * (angle - bend), STIFFNESS * angle)
     assert moved(0.5 * torque / LOAD, angle, torque)[:, FRONT].any() == is_edge
+
+
+STEPS = Stances(np.arange(COUNT) // 300, np.ones(COUNT))
+
+
+@pytest.mark.parametrize(
+    ("inside", "is_moved"), [(0.002, True), (0.0085, True), (0.0095, False), (0.02, False)]
+)
+def test_the_edge_of_a_foot_that_steps_is_where_its_centre_of_pressure_stops(
+    inside: float, is_moved: bool
+) -> None:
+    """Three tenths of half of 6 cm at most: nearer to the middle the centre of pressure only turns back."""
+    cop_x = np.minimum(0.01 + 0.029 * SWAY, 0.03 - inside)
+    found = moved(cop_x, stances=STEPS)
+    assert found[:, FRONT] == pytest.approx(inside if is_moved else 0.0)
+    assert not np.delete(found, FRONT, axis=1).any()
+    assert not moved(cop_x).any(), "a foot that stands may lean there and be flat"
+    recording = made_recording("sway", 0.02 * SWAY, STIFFNESS * 0.02 * SWAY, stances=STEPS)
+    recording.contacts[FOOT].standing[cop_x > 0.0] = False
+    depth = edge_distances(np.column_stack([cop_x, np.zeros(COUNT)]), SOLE)
+    assert not moved_inwards(recording, FOOT, depth, SOLE).any(), "a foot in the air stops nowhere"
+
+
+def test_the_edge_of_a_wide_sole_is_a_centimetre_from_its_place_at_most() -> None:
+    depth = np.tile([0.05, 0.0099, 0.0101, 0.05], (100, 1))
+    depth[:50] += 0.01
+    wide = 3 * SOLE
+    assert _stopped_near(depth, wide, 50) == pytest.approx([0.0, 0.0099, 0.0, 0.0])
+    assert not _stopped_near(depth, wide, 51).any(), "a few samples less are a shock"
+    depth[40] = np.nan
+    assert _stopped_near(depth, wide, 50)[1] == pytest.approx(0.0099), "unknown samples tell nothing"
+    assert not _stopped_near(depth[:9], wide, 10).any()
+
+
+@pytest.mark.parametrize(("middle", "swing", "expected"), [(0.005, 0.029, 0.006), (0.01, 0.027, 0.007)])
+def test_an_edge_of_steps_is_moved_by_what_moves_it_more(
+    middle: float, swing: float, expected: float
+) -> None:
+    """4 mm beyond the edge opposite and a stop at 6 mm; 7 mm beyond, and nothing that comes near."""
+    found = moved(middle + swing * SWAY, stances=STEPS)
+    assert found[:, BACK] == pytest.approx(expected, rel=0.02)
+    assert not found[:, FRONT].any()

@@ -62,7 +62,8 @@ def test_what_was_found_is_taken_off_torque_and_path(recording: Recording, fit: 
 def test_a_memory_is_found_about_the_centre_that_the_round_before_left(
     recording: Recording, fit: AxisFit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """How far aside it is stances find by themselves."""
+    """How far aside it is stances find by themselves; other slip angles are tried once."""
+    searched = list[bool]()
     asked: list[tuple[float, ...]] = []
     rounds = iter((1.0, 2.0, 3.0))
 
@@ -78,7 +79,13 @@ def test_a_memory_is_found_about_the_centre_that_the_round_before_left(
     monkeypatch.setattr(memory_fit, "over_stances", over_stances)
     monkeypatch.setattr(memory_fit, "data_set_of", data_set_of)
     monkeypatch.setattr(memory_fit, "with_model", lambda *given: given)
-    monkeypatch.setattr(memory_fit, "fit_again", lambda before, sets: (before, sets))
+
+    def fit_again(before: object, sets: object, *, elsewhere: bool) -> tuple[object, object]:
+        searched.append(elsewhere)
+        return before, sets
+
+    monkeypatch.setattr(memory_fit, "fit_again", fit_again)
     found = about_its_centre(fit, "first", [recording], 0.3)  # type: ignore[arg-type]
     assert asked == [(10.0, 100.0), (20.0, 200.0)]
+    assert searched == [True, False]
     assert found.place == (3.0, 30.0, 300.0)  # type: ignore[comparison-overlap]

@@ -91,7 +91,7 @@ def test_of_a_foot_that_steps_it_is_known_less_well(fit: AxisFit, recordings: li
     stances = Stances(np.arange(COUNT) // 500, np.ones(COUNT))
     stepping = [replace(one, stances={FOOT: stances}) for one in recordings]
     (cause,) = slip_angle_causes(Tangent.of(claimed(fit, 0.012), stepping, False))
-    assert cause.std == pytest.approx(0.016, rel=1e-6)
+    assert cause.std == pytest.approx(np.sqrt(0.025**2 - 0.012**2), rel=1e-6)
     assert slip_angle_causes(Tangent.of(claimed(fit, 0.012), recordings, False)) == []
 
 

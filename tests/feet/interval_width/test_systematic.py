@@ -13,6 +13,7 @@ from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks
@@ -196,7 +197,7 @@ def test_what_spring_and_element_take_from_each_other() -> None:
         linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
     )
     (cause,) = _shared_slope(fit, [recording])
-    assert cause.share == pytest.approx([0.003 * 300.0, 0.012 * 20.0, 0.012 * 3.0, 0.006 * 0.01])
+    assert cause.share == pytest.approx([0.003 * 300.0, 0.012 * 20.0, 0.012 * 3.0, 0.0])
 
 
 def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum() -> None:
@@ -211,6 +212,23 @@ def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum
     (cause,) = _shared_slope(fit, [recording])
     assert cause.share[0] == pytest.approx(300.0 / np.sqrt(3))
     assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)
+    assert cause.share[3] == pytest.approx(0.01 / np.sqrt(3))
+
+
+def test_an_element_turned_round_where_no_sample_is_used_is_a_guess_beside_a_spring_that_is_known() -> None:
+    """Stances of half a second bend the foot by three slip angles, and by less than one and a half while it is flat."""
+    place = np.arange(2000)
+    angle, number = 0.03 * (place % 50) / 50, place // 50
+    recording = made_recording("walk", angle, 400.0 * angle, stances=Stances(number, np.ones(2000)))
+    flat = recording.without(FOOT, place % 50 > 24, Reason.NEAR_THE_EDGE)
+    linear = fit_axis([made_recording("walk", swayed(2000), 400.0 * swayed(2000))], FOOT, "pitch", LINEAR)
+    assert linear is not None
+    fit = replace(
+        linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
+    )
+    ((whole,), (cause,)) = (_shared_slope(fit, [one]) for one in (recording, flat))
+    assert whole.share == pytest.approx([0.9, 0.24, 0.036, 0.0])
+    assert cause.share == pytest.approx([0.9, 0.24, 3.0 / np.sqrt(3), 0.01 / np.sqrt(3)])
 
 
 @pytest.mark.parametrize(("seed", "zeros"), [(0, 3.5355), (5, 0.4), (5, 20.0)])

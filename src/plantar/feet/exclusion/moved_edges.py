@@ -1,4 +1,7 @@
-"""Edges of a sole that seem to lie inside of its outline, since a zero of the torque moves the centre of pressure."""
+"""Edges of a sole that seem to lie inside of its outline.
+
+A zero of the torque moves the centre of pressure, and a force sensor or an outline may be beside its place.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,9 @@ SHELLS = 40  # of equal width, into which the angles are sorted
 FILLED = 5  # samples, for a shell's median to be one
 STOPPED = 0.25  # of the usual change of the torque with the angle: over an edge there is next to none
 LEAST_PLATEAU = 0.01  # rad: a shorter one may be the end of a hysteresis's loop
+# m, and of half the sole's width, by which a force sensor or an outline may be beside its place: three deviations of a
+# careful lab's 3 mm; of a small foot less, or the middle of the sole would count as its edge.
+MISPLACED, MISPLACED_SHARE = 0.01, 0.3
 
 
 def moved_inwards(recording: Recording, foot: str, depth: Array, polygon: Array) -> Array:
@@ -30,7 +36,26 @@ def moved_inwards(recording: Recording, foot: str, depth: Array, polygon: Array)
     inwards = np.maximum(
         _passed_opposite(moments[standing], polygon, fewest), _stopped_inside(recording, foot, moments)
     )
-    return inwards / load[:, None]
+    moved = inwards / load[:, None]
+    if recording.stances[foot] is None:
+        return moved
+    return np.maximum(moved, _stopped_near(depth[standing], polygon, fewest))
+
+
+def _stopped_near(depth: Array, polygon: Array, fewest: int) -> Array:
+    """How far inside of each edge the centre of pressure stops, (n,) [m], where a place that is wrong would explain it;
+    below zero where it passes the edge.
+
+    A sole that steps tips about all edges that it rolls over, a little in each step, and there the centre of pressure
+    stops: that is the edge, wherever its outline is said to be. Where it only turns back near it, a few samples are
+    left out without need.
+    """
+    known = depth[np.isfinite(depth).all(axis=1)]
+    if len(known) < fewest:
+        return np.zeros(depth.shape[1])
+    stop = np.partition(known, fewest - 1, axis=0)[fewest - 1]
+    most = min(MISPLACED, MISPLACED_SHARE * float(np.ptp(polygon, axis=0).min()) / 2)
+    return np.where(stop < most, stop, 0.0)
 
 
 def _passed_opposite(moments: Array, polygon: Array, fewest: int) -> Array:

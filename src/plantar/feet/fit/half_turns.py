@@ -32,18 +32,23 @@ SHORT = (
 )
 
 
-def slip_angles_spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
-    """How many slip angles the path of a usual stance spans; None of a foot that stands and a model without one."""
-    if fit.slip_angle is None or (spanned := _spanned(fit, recordings)) is None:
+def slip_angles_spanned(fit: AxisFit, recordings: Sequence[Recording], *, used: bool = False) -> float | None:
+    """How many slip angles the path of a usual stance spans, or those of its samples that are `used`; None of a foot
+    that stands and a model without one."""
+    if fit.slip_angle is None or (spanned := _spanned(fit, recordings, used=used)) is None:
         return None
     return spanned / fit.slip_angle
 
 
-def _spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
+def _spanned(fit: AxisFit, recordings: Sequence[Recording], *, used: bool = False) -> float | None:
     """From end to end of a usual stance [rad]; None of a foot that stands in all of them."""
     walks = [each for each in recordings if each.stances[fit.foot] is not None and each.name in fit.offsets]
-    paths = [path_of(each, fit.foot, fit.axis, fit.imu_turned) for each in walks]
-    spans = [float(np.ptp(path.deflection[run])) for path in paths for run in path.runs]
+    spans = list[float]()
+    for walk in walks:
+        path = path_of(walk, fit.foot, fit.axis, fit.imu_turned)
+        for run in path.runs:
+            angles = path.deflection[run][walk.used(fit.foot)[run]] if used else path.deflection[run]
+            spans.append(float(np.ptp(angles)) if len(angles) else 0.0)
     return float(np.median(spans)) if spans else None
 
 

@@ -46,12 +46,15 @@ def standing(
 def about_its_centre(
     linear: AxisFit, fit: ModelFit, recordings: Sequence[Recording], share: float
 ) -> AxisFit:
-    """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell."""
+    """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell.
+
+    As soon as they do, other slip angles are tried: about a wrong centre a wrong one may fit best.
+    """
     found = over_stances(with_model(linear, fit), recordings)
-    for _ in range(CENTRE_ROUNDS):
+    for turn in range(CENTRE_ROUNDS):
         place = found.place[1:]
         data_sets = [data_set_of(each, linear.foot, linear.axis, share, *place) for each in recordings]
-        fit = fit_again(fit, data_sets)
+        fit = fit_again(fit, data_sets, elsewhere=turn == 0)
         found = over_stances(with_model(linear, fit), recordings)
     return found
 

@@ -18,9 +18,9 @@ from plantar.model_selection.variable_projection import SHAPE_STEP
 
 NAME = "slip angle"
 UNRESOLVED = SHAPE_STEP / 2  # deviation, as a share: the derivative is taken over twice as much either way
-# Likewise of feet that step: what sensors and robot file may get wrong moves no slip angle there (see `Tangent`). Of 20
-# in simulated walks angles were off by twice what they were said to be known to.
-UNRESOLVED_IN_STEPS = 0.02
+# Likewise of feet that step: what sensors and robot file may get wrong moves no slip angle there (see `Tangent`). Of 24
+# in walks of simulated robots (HRP-2, TALOS, G1, Alexander) the root mean square of the errors was 2.4 %.
+UNRESOLVED_IN_STEPS = 0.025
 
 
 def slip_angle_causes(tangent: Tangent) -> list[Cause]:

@@ -30,11 +30,10 @@ from plantar.signals.segments import run_numbers
 SUSPECTED = 2.0  # deviations of a term that the model leaves out
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 # Of the slope of an element found in short stances, what its share of the spring is unsure by; of its slip torque and
-# of the damping beside it, what these are, and of its slip angle: by errors on walks of two simulated robots, less what
-# other causes make of them.
+# of the damping beside it, what these are: by errors on walks of two simulated robots, less what other causes make of
+# them.
 SLOPE_UNSURE = 0.003
 ELEMENT_UNSURE = 0.012
-ANGLE_UNSURE = 0.006
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
 
@@ -118,20 +117,24 @@ def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     """What a memory that was found in short stances may have taken from the spring, or left to it.
 
     Until it slips, an element is a spring; each stance begins with a state that nobody knows. Where no stance turns the
-    element round, any part of its slope may be the spring's.
+    element round, any part of its slope may be the spring's. Where only the way that no fit uses does, as of a sole
+    that tips there, its torque and its angle are guesses.
     """
     if "slip_torque" not in fit.model.terms:
         return []
-    spanned = slip_angles_spanned(fit, recordings)
-    spring, torque = (
-        (SLOPE_UNSURE, ELEMENT_UNSURE) if spanned is None or spanned >= ROUND else (UNIFORM, UNIFORM)
-    )
+    turned, seen = (_turned_round(fit, recordings, used=used) for used in (False, True))
     place, effect = fit.model.terms.index("slip_torque"), np.zeros(len(fit.numbers))
-    effect[[0, place]] = spring * element_slope(fit), -torque * fit.values[place]
+    effect[0] = (SLOPE_UNSURE if turned else UNIFORM) * element_slope(fit)
     effect[1] = ELEMENT_UNSURE * fit.values[1]  # both make loops
-    if fit.slip_angle is not None:
-        effect[len(fit.values) + fit.model.shape_terms.index("slip_angle")] = ANGLE_UNSURE * fit.slip_angle
+    effect[place] = -(ELEMENT_UNSURE if seen else UNIFORM) * fit.values[place]
+    if not seen and fit.slip_angle is not None:
+        effect[len(fit.values) + fit.model.shape_terms.index("slip_angle")] = UNIFORM * fit.slip_angle
     return [Cause("memory in stances", effect, 1.0)]
+
+
+def _turned_round(fit: AxisFit, recordings: Sequence[Recording], *, used: bool) -> bool:
+    spanned = slip_angles_spanned(fit, recordings, used=used)
+    return spanned is None or spanned >= ROUND
 
 
 def _hidden_memory(fit: AxisFit, *, steps: bool) -> list[Cause]:
