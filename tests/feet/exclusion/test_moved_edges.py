@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from made_recording import FOOT, LOAD, PERIOD, made_recording
+from plantar.contact.phases import AIR, SUPPORTS
 from plantar.contact.polygon import edge_distances
 from plantar.contact.stances import Stances
 from plantar.feet.exclusion.moved_edges import _stopped_near, moved_inwards
@@ -103,7 +104,7 @@ def test_the_edge_of_a_foot_that_steps_is_where_its_centre_of_pressure_stops(
     assert not np.delete(found, FRONT, axis=1).any()
     assert not moved(cop_x).any(), "a foot that stands may lean there and be flat"
     recording = made_recording("sway", 0.02 * SWAY, STIFFNESS * 0.02 * SWAY, stances=STEPS)
-    recording.contacts[FOOT].standing[cop_x > 0.0] = False
+    recording.contacts[FOOT].support[cop_x > 0.0] = SUPPORTS.index(AIR)
     depth = edge_distances(np.column_stack([cop_x, np.zeros(COUNT)]), SOLE)
     assert not moved_inwards(recording, FOOT, depth, SOLE).any(), "a foot in the air stops nowhere"
 
