@@ -7,7 +7,7 @@ unknown initial state in every run. The uncertainty of all of them enters the in
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -151,10 +151,32 @@ def fit_model(
 
 
 def fit_again(before: ModelFit, data_sets: Sequence[DataSet], *, elsewhere: bool = False) -> ModelFit:
-    """The fit of the same recordings with other torques, from where it came to rest before, and from `elsewhere`."""
+    """The fit of the same recordings with other torques, from where it came to rest before; if asked to, or where the
+    search comes to rest from slip angles `elsewhere`, all over their range.
+
+    With the state of every landing free the squares have several minima along it.
+    """
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
-    return refine(problem, where_it_rested(problem, before), before.limits, rested=True, elsewhere=elsewhere)
+    found = refine(problem, where_it_rested(problem, before), before.limits, rested=True)
+    if not elsewhere or SLIP_ANGLE not in before.model.shape_terms:
+        return found
+    place, tried = before.model.shape_terms.index(SLIP_ANGLE), list[ModelFit]()
+    for angle in np.geomspace(before.limits[0, place], before.limits[1, place], ANGLES):
+        shape = found.shape.copy()
+        shape[place] = angle
+        held, start = np.array([shape, shape]), where_it_rested(problem, replace(found, shape=shape))
+        tried.append(refine(problem, start, held, searches=[(FIRST_ITERATIONS, WIDEST_SCAN)]))
+    tried.sort(key=lambda fit: fit.rms)
+    wide = [(LANDING_ITERATIONS, WIDEST_SCAN)]
+    rests = [
+        refine(problem, where_it_rested(problem, fit), before.limits, searches=wide)
+        for fit in tried[:GONE_ON_FROM]
+    ]
+    best = min(rests, key=lambda fit: fit.rms)
+    if best.rms**2 > (1 - LANDING_GAIN) * found.rms**2:
+        return found
+    return refine(problem, where_it_rested(problem, best), before.limits, rested=True)
 
 
 def refits_without_each(
@@ -171,8 +193,8 @@ def refits_without_each(
         others = [each for each in prepared if each is not left_out]
         problem = Problem(model, others, shared_offset=False)
         start = problem.at(shape, np.concatenate([initial_states[each.label] for each in others]))
-        rest = _rest(problem, start, limits, ITERATIONS, WIDEST_SCAN * NARROWING)
-        found.append(np.append(rest.values, rest.shape))
+        fit = refine(problem, start, limits, rested=True)
+        found.append(np.append(fit.values, fit.shape))
     return np.array(found)
 
 
@@ -195,67 +217,40 @@ def refine(
     *,
     refined: bool = True,
     rested: bool = False,
-    elsewhere: bool = False,
+    searches: Sequence[tuple[int, float]] = (),
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
     Where the foot steps, they go from the better one of two guesses of the state at each landing: where steps lead, and
     what the air leaves of that. A fit that had come to rest (`rested`) with other torques keeps its landings and looks
-    about it for corners only nearby, and, if asked to, `elsewhere`. Not `refined`, it stays at the start: enough to see
-    that a model is wrong, as are deviations without what a fit takes up of noise.
+    about it for corners only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong, as are
+    deviations without what a fit takes up of noise. searches: iterations of each search and how wide its first scan is,
+    in place of all that.
     """
     if not refined or not (len(start.shape) or problem.model.remembers):
         return _finished(problem, start, limits, refined)
-    searches = [(ITERATIONS, WIDEST_SCAN * (NARROWING if rested else 1.0))]
-    if problem.lands and not rested:
-        searches = [*2 * [(LANDING_ITERATIONS, WIDEST_SCAN)], *searches]
-    rests = list[Point]()
+    if not searches:
+        searches = [(ITERATIONS, WIDEST_SCAN * (NARROWING if rested else 1.0))]
+        if problem.lands and not rested:
+            searches = [*2 * [(LANDING_ITERATIONS, WIDEST_SCAN)], *searches]
+    remembers, rests = problem.model.remembers, list[Point]()
     for iterations, width in searches:
-        rests.append(_rest(problem, _onward(problem, rests) if rests else start, limits, iterations, width))
-    found = rests[-1]
-    if elsewhere and SLIP_ANGLE in problem.model.shape_terms:
-        found = _elsewhere(problem, found, limits)
-    return _finished(problem, found, limits, refined)
-
-
-def _rest(problem: Problem, point: Point, limits: Array, iterations: int, width: float) -> Point:
-    """Where steps and scans from a point come to rest, scans at first as wide as `width`."""
-    remembers = problem.model.remembers
-    for _ in range(iterations):
-        moved = step(problem, point, limits)
-        if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
-            point = moved
-            continue
-        rest = moved or point
-        scanned = scan(problem, rest, width) if remembers else None
-        if remembers and scanned is None:
-            scanned = scan_shape(problem, rest, limits, width)
-        width *= NARROWING
-        point = scanned or rest
-        if scanned is None and (not remembers or width < NARROWEST_SCAN):
-            break
-    return point
-
-
-def _elsewhere(problem: Problem, found: Point, limits: Array) -> Point:
-    """The point itself, or where the search comes to rest from another slip angle, all over the range of these.
-
-    With the state of every landing free the squares have several minima along it.
-    """
-    place = problem.model.shape_terms.index(SLIP_ANGLE)
-    low, high = limits[:, place]
-    tried = list[Point]()
-    for angle in np.geomspace(low, high, ANGLES):
-        shape = found.shape.copy()
-        shape[place] = angle
-        start, held = problem.at(shape, found.initial_states), np.array([shape, shape])
-        tried.append(_rest(problem, start, held, FIRST_ITERATIONS, WIDEST_SCAN))
-    tried.sort(key=lambda point: point.squares)
-    rests = [_rest(problem, each, limits, LANDING_ITERATIONS, WIDEST_SCAN) for each in tried[:GONE_ON_FROM]]
-    best = min(rests, key=lambda point: point.squares)
-    if best.squares > (1 - LANDING_GAIN) * found.squares:
-        return found
-    return _rest(problem, best, limits, ITERATIONS, WIDEST_SCAN * NARROWING)
+        point = _onward(problem, rests) if rests else start
+        for _ in range(iterations):
+            moved = step(problem, point, limits)
+            if moved is not None and moved.squares <= (1 - SETTLED) * point.squares:
+                point = moved
+                continue
+            rest = moved or point
+            scanned = scan(problem, rest, width) if remembers else None
+            if remembers and scanned is None:
+                scanned = scan_shape(problem, rest, limits, width)
+            width *= NARROWING
+            point = scanned or rest
+            if scanned is None and (not remembers or width < NARROWEST_SCAN):
+                break
+        rests.append(point)
+    return _finished(problem, rests[-1], limits, refined)
 
 
 def _onward(problem: Problem, rests: Sequence[Point]) -> Point:
