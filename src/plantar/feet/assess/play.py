@@ -13,6 +13,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, SURE, Array
 from plantar.estimation import Block, fit_blocks
+from plantar.estimation.least_squares import factor_of
 from plantar.feet.place.misread_joints import BETTER, SOFT
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -56,19 +57,32 @@ def find_play(tangent: Tangent) -> Play | None:
         return None
     torques = _torques(tangent)
     zeros = [0.0, *np.percentile(np.concatenate(torques), ZEROS)]
-    fits = [
-        fit_blocks(all_beside(_spring(tangent), _signs(torques, zero)), shared_offset=tangent.shared)
-        for zero in zeros
-    ]
+    signs = [_signs(torques, zero) for zero in zeros]
+    spring = _spring(tangent)
+    together = [np.hstack(own) for own in zip(*signs, strict=True)]
+    factor = factor_of(all_beside(spring, together), tangent.shared).factor
+    tried = [_by_sign(factor, place, len(zeros)) for place in range(len(zeros))]
     # Noise of the torque makes its own sign, which adds where a spring that plays loses.
-    playing = [place for place, fit in enumerate(fits) if fit.values[2] < 0 < fit.values[0]]
+    playing = [place for place, (values, _) in enumerate(tried) if values[2] < 0 < values[0]]
     if not playing:
         return None
-    place = min(playing, key=lambda place: fits[place].squares)
-    found = fits[place]
+    place = min(playing, key=lambda place: tried[place][1])
+    found = fit_blocks(all_beside(spring, signs[place]), shared_offset=tangent.shared)
     stiffness, loss = float(found.values[0]), -float(found.values[2])
     deviations = loss / float(found.std[2])
     return Play(2 * loss / stiffness, deviations, zeros[place], found.values[:2], found.squares)
+
+
+def _by_sign(factor: Array, place: int, count: int) -> tuple[Array, float]:
+    """Spring, damper and the sign's torque (3,), and the squares that are left, of a fit with one of `count` signs.
+
+    factor: of [spring, damper, signs, offsets, response], which holds the fits with any of these columns.
+    """
+    both = len(BESIDE)
+    columns = factor[:, [*range(both), both + place, *range(both + count, factor.shape[1] - 1)]]
+    length = np.maximum(np.linalg.norm(columns, axis=0), np.finfo(float).tiny)
+    values = np.linalg.lstsq(columns / length, factor[:, -1])[0] / length
+    return values[: both + 1], float(np.sum((factor[:, -1] - columns @ values) ** 2))
 
 
 def play_notes(tangent: Tangent, wide: AxisFit, other: Play | None = None) -> list[Note]:
