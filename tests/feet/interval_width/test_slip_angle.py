@@ -12,6 +12,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.feet.assess.diagnosis import REMEDY
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.interval_width import slip_angle
 from plantar.feet.interval_width.cause import inflated
 from plantar.feet.interval_width.slip_angle import (
     NAME,
@@ -87,12 +88,19 @@ def test_what_is_claimed_less_well_is_believed(
         assert inflated(claimed(fit, share), causes).std[PLACE] == pytest.approx(UNRESOLVED * fit.shape[0])
 
 
-def test_of_a_foot_that_steps_it_is_known_less_well(fit: AxisFit, recordings: list[Recording]) -> None:
+def test_of_a_foot_that_steps_it_is_known_less_well_and_moves_spring_and_damper_no_more(
+    fit: AxisFit, recordings: list[Recording], monkeypatch: pytest.MonkeyPatch
+) -> None:
     stances = Stances(np.arange(COUNT) // 500, np.ones(COUNT))
     stepping = [replace(one, stances={FOOT: stances}) for one in recordings]
     (cause,) = slip_angle_causes(Tangent.of(claimed(fit, 0.012), stepping, False))
     assert cause.std == pytest.approx(np.sqrt(0.025**2 - 0.012**2), rel=1e-6)
     assert slip_angle_causes(Tangent.of(claimed(fit, 0.012), recordings, False)) == []
+    (wide,) = slip_angle_causes(Tangent.of(claimed(fit, 1e-6), stepping, False))
+    monkeypatch.setattr(slip_angle, "UNRESOLVED_IN_STEPS", UNRESOLVED)
+    (usual,) = slip_angle_causes(Tangent.of(claimed(fit, 1e-6), stepping, False))
+    assert wide.share[:2] == pytest.approx(usual.share[:2], rel=1e-3)
+    assert wide.share[2:] == pytest.approx(5 * usual.share[2:], rel=1e-3)
 
 
 def test_a_spring_without_memory_has_none(recordings: list[Recording]) -> None:
