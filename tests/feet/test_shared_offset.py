@@ -15,6 +15,7 @@ from biped_robot import FEET
 from feet_trials import AXES, EXACT, LINEAR, biased, rotational
 from plantar.estimation import linear
 from plantar.estimation.blocks import Block
+from plantar.feet.assess import play
 from plantar.feet.identify import identify_feet
 from plantar.robot.model import RobotModel
 
@@ -41,6 +42,7 @@ def fits(monkeypatch: pytest.MonkeyPatch) -> Fits:
 
         return spy
 
+    monkeypatch.setattr(play, "factor_of", told("factor_of"))
     for name in ("fit_linear", "influences", "factor_of"):
         monkeypatch.setattr(linear, name, told(name))
     return seen
