@@ -18,6 +18,7 @@ from bush_data_sets import (
     unseen,
     unseen_error,
 )
+from plantar.model_selection import selection
 from plantar.model_selection.model_fit import fit_model
 from plantar.model_selection.selection import _clear, choose_model
 from plantar.models import Elastoplastic, Hardening, KelvinVoigt
@@ -50,6 +51,21 @@ def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
     assert choice.fit is choice.equivalent
     assert choice.caution is None
     assert sum(score.chosen for score in choice.ranking) == 1
+
+
+@pytest.mark.parametrize(("whole", "slow"), [(True, True), (True, False), (False, True)])
+def test_a_choice_says_whether_a_spring_that_creeps_is_what_predicts_better(
+    whole: bool, slow: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where whole recordings are held out; a caution of another kind says nothing of it."""
+    fits = {"better": object()}
+    monkeypatch.setattr(selection, "_clearly_better", lambda *_, whole: SimpleNamespace(fit=fits["better"]))
+    monkeypatch.setattr(selection, "_creeps", lambda fit, chosen: slow and fit is fits["better"])
+    monkeypatch.setattr(selection, "_caution", lambda *_, whole: "told")
+    folds = selection.folds_of
+    monkeypatch.setattr(selection, "folds_of", lambda prepared: (folds(prepared)[0], whole))
+    choice = choose_model(campaign(1, Rubber()), [KelvinVoigt()], shared_offset=False, before=None)
+    assert (choice.caution, choice.creeps) == ("told", slow and whole)
 
 
 @pytest.mark.parametrize(

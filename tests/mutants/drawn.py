@@ -62,8 +62,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "model_selection/selection.py", "a refused model is told of for any gain",
-        "score.held_out_rms < (1 - asked[place]) * scores[winner].held_out_rms",
-        "score.held_out_rms < scores[winner].held_out_rms",
+        "else TELLING_GAIN))", "else 0.0))",
     ),
     Mutant(
         "model_selection/variable_projection.py", "the initial state's slope has the wrong sign",

@@ -21,7 +21,7 @@ from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.tangent import Tangent
-from plantar.model_selection.selection import CREEPS, LEAST_GAIN, ModelChoice, ModelScore
+from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 from plantar.results.feet_rows import WEAK_WIDTH
@@ -89,7 +89,7 @@ def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFo
 def _with_shared_creep(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
     """The feet, every spring that a memory predicts better cautioned where one axis shows that the rubber creeps."""
     choices = [fit.choice for one in feet.values() for fit in one.fits.values()]
-    if not any(choice is not None and (choice.caution or "").startswith(CREEPS) for choice in choices):
+    if not any(choice is not None and choice.caution is not None and choice.creeps for choice in choices):
         return dict(feet)
     return {
         foot: replace(

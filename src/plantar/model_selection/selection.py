@@ -27,7 +27,6 @@ LEAST_GAIN = 0.10  # of the held-out rms error
 # Of the held-out rms error: a model that cannot be identified but is this much better is mentioned.
 TELLING_GAIN = 0.3
 TOLD = 4.0  # standard deviations from zero, of a term that a model adds to a simpler one
-CREEPS = "rubber that goes on yielding"
 LEAST_CREEP = 0.08  # of the stiffness, that rubber which yields slowly takes off it
 # Times the best model's squares, at its best candidate: such a model is not refined. Nor is one, where only a large
 # gain is clear, whose best candidate gains less than is mentioned: candidates lack little of what such elements show.
@@ -55,7 +54,8 @@ class ModelChoice:
     """The chosen model's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
 
     What holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions made
-    slip counts as part of the spring. `caution` says so where the motions show that there is one.
+    slip counts as part of the spring. `caution` says so where the motions show that there is one, or that the rubber
+    `creeps`.
     """
 
     fit: ModelFit
@@ -65,6 +65,7 @@ class ModelChoice:
     reason: str
     reach: float
     caution: str | None
+    creeps: bool = False
 
     @property
     def spring(self) -> ModelScore:
@@ -146,6 +147,7 @@ def choose_model(
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
     held_out = "whole recordings" if whole else f"{FOLDS} contiguous parts of each recording"
+    better = _clearly_better(scores, errors, winner, least_gain, whole=whole)
     return ModelChoice(
         fit=chosen.fit,
         equivalent=scores[linear].fit,
@@ -154,6 +156,7 @@ def choose_model(
         reason=_reason(chosen, scores[linear], held_out),
         reach=reach(motions),
         caution=_caution(scores, errors, winner, least_gain, whole=whole),
+        creeps=whole and better is not None and _creeps(better.fit, chosen.fit),
     )
 
 
@@ -223,25 +226,14 @@ def _caution(
 ) -> str | None:
     """Whether a model that was not chosen predicts clearly better: then the bush is not as the chosen model says.
 
-    It was refused, or in short stances, whose states are free, gains less than the `least_gain` asked for there. Of one
-    that was refused for its slowness alone a smaller gain tells, as of one that is chosen, where `whole` recordings are
-    held out: within one the attitude's wander gains as much.
+    It was refused, or in short stances, whose states are free, gains less than the `least_gain` asked for there.
     """
-    slow = [whole and _creeps(score.fit, scores[winner].fit) for score in scores]
-    asked = [min(least_gain, TELLING_GAIN) if one else TELLING_GAIN for one in slow]
-    better = [
-        place
-        for place, score in enumerate(scores)
-        if score.held_out_rms < (1 - asked[place]) * scores[winner].held_out_rms
-        and _clear(scores, errors, min(least_gain, TELLING_GAIN), simple=winner, rich=place)
-    ]
-    if not better:
+    best = _clearly_better(scores, errors, winner, least_gain, whole=whole)
+    if best is None:
         return None
-    place = min(better, key=lambda place: scores[place].held_out_rms)
-    best = scores[place]
-    if slow[place]:
+    if whole and _creeps(best.fit, scores[winner].fit):
         return (
-            f"{CREEPS} for {best.fit.value(RELAXATION_TIME):.2g} s or longer predicts held-out "
+            f"rubber that goes on yielding for {best.fit.value(RELAXATION_TIME):.2g} s or longer predicts held-out "
             f"motion better ({best.held_out_rms:.3g} against {scores[winner].held_out_rms:.3g} rms); under a load that "
             "stays the stiffness is smaller (record slow motions, each lean held for half a minute)"
         )
@@ -251,6 +243,26 @@ def _caution(
         f"{scores[winner].held_out_rms:.3g} rms) but {why}; stiffness and damping are those of these motions only "
         "(record larger motions)"
     )
+
+
+def _clearly_better(
+    scores: Sequence[ModelScore], errors: Sequence[Array], winner: int, least_gain: float, *, whole: bool
+) -> ModelScore | None:
+    """The best model of those that predict clearly better than the winner.
+
+    Of one that was refused for its slowness alone a smaller gain tells, as of one that is chosen, where `whole`
+    recordings are held out: within one the attitude's wander gains as much.
+    """
+    least = min(least_gain, TELLING_GAIN)
+    better = [
+        score
+        for place, score in enumerate(scores)
+        if score.held_out_rms
+        < (1 - (least if whole and _creeps(score.fit, scores[winner].fit) else TELLING_GAIN))
+        * scores[winner].held_out_rms
+        and _clear(scores, errors, least, simple=winner, rich=place)
+    ]
+    return min(better, key=lambda score: score.held_out_rms, default=None)
 
 
 def _creeps(fit: ModelFit, chosen: ModelFit) -> bool:
