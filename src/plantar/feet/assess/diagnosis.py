@@ -34,7 +34,7 @@ REMEDY = {
     "write what stays unknown into the robot file (uncertainty: joint_compliance)",
     "low-pass": "filter all sensors alike, or with a cut-off far above the motion's frequencies",
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
-    "between walks": "add walks: five or more show by themselves how much they differ",
+    "between walks": "add walks: the mean of more is surer, and five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
     "angle errors": "use larger motions, beside which errors of the angle are small; or an attitude that wanders less, "
     "and encoders without noise or play",
