@@ -176,8 +176,8 @@ DRAWN_TWICE = (
     Mutant(
         "logs/readers/text_numbers.py",
         "a line of marks alone cannot be read",
-        '_is_number(words[0] if words else b"")',
-        "_is_number(words[0])",
+        'is_number(words[0] if words else b"")',
+        "is_number(words[0])",
         ("logs/readers/test_edges.py",),
     ),
     Mutant(

@@ -74,7 +74,7 @@ class _Lines:
         """Take comments and a line of names off the top; the first line of numbers gives the width."""
         for index, line in enumerate(lines):
             words = line.lstrip(b"#%/ ").split()
-            if line.lstrip().startswith(COMMENT) or not _is_number(words[0] if words else b""):
+            if line.lstrip().startswith(COMMENT) or not is_number(words[0] if words else b""):
                 self.names = [word.decode("utf-8", "replace") for word in words]
                 continue
             self.limit.columns(len(words))
@@ -121,7 +121,8 @@ def _refuse_decimal_commas(head: bytes, path: Path) -> None:
             raise LogError(f"has decimal commas: '{told}'", path=path, valid="decimal points")
 
 
-def _is_number(word: bytes) -> bool:
+def is_number(word: str | bytes) -> bool:
+    """Whether Python reads a word as a number, NaN and infinity among them."""
     try:
         float(word)
     except ValueError:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from plantar.errors import LogError
 from plantar.logs.readers.read_limit import BLOCK, COLUMNS, ReadLimit
+from plantar.logs.readers.text_numbers import is_number
 
 PIECE = 2**23  # bytes of whole lines at a time: few enough to hold, enough for two cores
 LINE_LIMIT = 2**20  # bytes of one line: COLUMNS numbers at full precision need a quarter of it
@@ -139,16 +140,8 @@ def _is_text(cells: list[str], columns: int) -> bool:
     """Whether a line holds texts alone, as units below the names; "1" is a unit too, an empty cell may be one."""
     texts = [text for cell in cells if (text := cell.strip()) not in ("", "1")]
     return (
-        len(cells) == columns and bool(texts) and not any(_is_number(text) or text in HOLES for text in texts)
+        len(cells) == columns and bool(texts) and not any(is_number(text) or text in HOLES for text in texts)
     )
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
 
 
 def _ends(text: bytes) -> int:
