@@ -13,8 +13,6 @@ from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.contact.reasons import Reason
-from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks
 from plantar.estimation.blocks import StanceRows
@@ -27,7 +25,6 @@ from plantar.feet.interval_width.systematic import (
     _angle_errors,
     _ends_of_stances,
     _late_torques,
-    _shared_slope,
     _softening,
     _suspected_hardening,
     systematic_causes,
@@ -184,51 +181,6 @@ def test_a_delay_in_doubt_counts_the_way_that_moves_the_stiffness_more() -> None
     late = SensorDelay(0.0, 0.01, 7.0, False, Note("delay", "info", ""), doubtful=True)
     found = causes_of(fit, [recording], late, VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 0.0}, 5.0))
     assert found["delay"].effect[0] < 0.0 < found["delay"].effect[1]
-
-
-def test_what_spring_and_element_take_from_each_other() -> None:
-    """Before it slips, the element is a spring of slip_torque / slip_angle beside the other."""
-    angle = swayed(2000)
-    recording = made_recording("sway", angle, 400.0 * angle)
-    linear = fit_axis([recording], FOOT, "pitch", LINEAR)
-    assert linear is not None
-    assert _shared_slope(linear, [recording]) == []
-    fit = replace(
-        linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
-    )
-    (cause,) = _shared_slope(fit, [recording])
-    assert cause.share == pytest.approx([0.003 * 300.0, 0.012 * 20.0, 0.012 * 3.0, 0.0])
-
-
-def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum() -> None:
-    """Stances of 0.5 s: a straight way of one slip angle each."""
-    angle, number = 0.01 * (np.arange(2000) % 50) / 50, np.arange(2000) // 50
-    recording = made_recording("walk", angle, 400.0 * angle, stances=Stances(number, np.ones(2000)))
-    linear = fit_axis([made_recording("walk", swayed(2000), 400.0 * swayed(2000))], FOOT, "pitch", LINEAR)
-    assert linear is not None
-    fit = replace(
-        linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
-    )
-    (cause,) = _shared_slope(fit, [recording])
-    assert cause.share[0] == pytest.approx(300.0 / np.sqrt(3))
-    assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)
-    assert cause.share[3] == pytest.approx(0.01 / np.sqrt(3))
-
-
-def test_an_element_turned_round_where_no_sample_is_used_is_a_guess_beside_a_spring_that_is_known() -> None:
-    """Stances of half a second bend the foot by three slip angles, and by less than one and a half while it is flat."""
-    place = np.arange(2000)
-    angle, number = 0.03 * (place % 50) / 50, place // 50
-    recording = made_recording("walk", angle, 400.0 * angle, stances=Stances(number, np.ones(2000)))
-    flat = recording.without(FOOT, place % 50 > 24, Reason.NEAR_THE_EDGE)
-    linear = fit_axis([made_recording("walk", swayed(2000), 400.0 * swayed(2000))], FOOT, "pitch", LINEAR)
-    assert linear is not None
-    fit = replace(
-        linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
-    )
-    ((whole,), (cause,)) = (_shared_slope(fit, [one]) for one in (recording, flat))
-    assert whole.share == pytest.approx([0.9, 0.24, 0.036, 0.0])
-    assert cause.share == pytest.approx([0.9, 0.24, 3.0 / np.sqrt(3), 0.01 / np.sqrt(3)])
 
 
 @pytest.mark.parametrize(("seed", "zeros"), [(0, 3.5355), (5, 0.4), (5, 20.0)])
