@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+from itertools import pairwise
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from example_robots import ICUB
+from example_robots import G1, ICUB
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.robot_guess import _first_draft
-from plantar.robot_guess.imu import Mount, turned_to_gravity
+from plantar.robot_guess.imu import Mount, find_frame, turned_to_gravity
 from plantar.robot_guess.sensors import Sensors
 from plantar.robot_guess.stance import Stance
 
@@ -64,3 +68,29 @@ def test_a_first_draft_takes_the_frame_of_the_imus_own_messages() -> None:
     assert draft.imu is not None
     assert (draft.imu[0], draft.imu[1].link) == ("torso", "chest")
     assert draft.imu[1].reason.endswith("; the logs also hold spare")
+
+
+def test_imu_frames_come_before_skins_and_say_what_else_there_is() -> None:
+    tree = UrdfTree.load(ICUB)
+    assert find_frame(tree, "chest", "").link == "imu_frame"
+    assert find_frame(tree, "chest", "chest").link == "chest", "the frame of its messages"
+    assert find_frame(UrdfTree.load(G1), "pelvis", "").link == "imu_in_pelvis"
+    assert find_frame(UrdfTree.load(G1), "imu", "").others == ("imu_in_pelvis",)
+
+
+@pytest.mark.parametrize(
+    ("name", "frame"), [("chest_imu", ""), ("imu0", "biped/chest_imu"), ("imu_link", "trunk")]
+)
+def test_a_chest_is_a_trunk_and_a_torso_before_any_other_part_of_the_body(name: str, frame: str) -> None:
+    """Also where only the frame of its messages says so, which the URDF does not have."""
+    links = ("pelvis_link", "waist_link", "torso_link", "hand_link")
+    robot = "".join(f"<link name='{link}'/>" for link in links) + "".join(
+        f"<joint name='j{k}' type='fixed'><parent link='{one}'/><child link='{next_}'/></joint>"
+        for k, (one, next_) in enumerate(pairwise(links))
+    )
+    found = find_frame(
+        UrdfTree(ET.fromstring(f"<robot name='b'>{robot}</robot>"), Path("b.urdf")), name, frame
+    )
+    assert found.link == "torso_link"
+    assert "torso" in found.reason
+    assert not found.others

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ET
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +41,6 @@ from plantar.robot.model import RobotModel, load_robot
 from plantar.robot_guess import guess_robot_file
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.feet import find_sole
-from plantar.robot_guess.imu import find_frame
 from renamed_joints import renamed
 from standing_robot import talos_sways
 
@@ -181,32 +178,6 @@ def test_a_sole_without_shapes_follows_from_mass_and_inertia(tmp_path: Path) -> 
             np.abs(np.ptp(bare.corners, axis=0) - np.ptp(drawn.corners, axis=0)).max()
             < 2 * bare.outline_spread
         )
-
-
-def test_imu_frames_come_before_skins_and_say_what_else_there_is(tmp_path: Path) -> None:
-    tree = UrdfTree.load(ICUB)
-    assert find_frame(tree, "chest", "").link == "imu_frame"
-    assert find_frame(tree, "chest", "chest").link == "chest", "the frame of its messages"
-    assert find_frame(UrdfTree.load(G1), "pelvis", "").link == "imu_in_pelvis"
-    assert find_frame(UrdfTree.load(G1), "imu", "").others == ("imu_in_pelvis",)
-
-
-@pytest.mark.parametrize(
-    ("name", "frame"), [("chest_imu", ""), ("imu0", "biped/chest_imu"), ("imu_link", "trunk")]
-)
-def test_a_chest_is_a_trunk_and_a_torso_before_any_other_part_of_the_body(name: str, frame: str) -> None:
-    """Also where only the frame of its messages says so, which the URDF does not have."""
-    links = ("pelvis_link", "waist_link", "torso_link", "hand_link")
-    robot = "".join(f"<link name='{link}'/>" for link in links) + "".join(
-        f"<joint name='j{k}' type='fixed'><parent link='{one}'/><child link='{next_}'/></joint>"
-        for k, (one, next_) in enumerate(pairwise(links))
-    )
-    found = find_frame(
-        UrdfTree(ET.fromstring(f"<robot name='b'>{robot}</robot>"), Path("b.urdf")), name, frame
-    )
-    assert found.link == "torso_link"
-    assert "torso" in found.reason
-    assert not found.others
 
 
 TURNS = [(np.pi, 0.0, 0.0), (0.0, np.pi / 2, 0.0), (0.0, 0.0, np.pi / 2), (0.0, np.pi, np.pi / 2)]
